@@ -38,6 +38,7 @@ ros1::LiveEvents::Handlers LiveSource::handlers() {
   handlers.on_dropped = [this](const ros1::Publication& publication) {
     listener_.onDropped(publication);
   };
+  handlers.on_senders = [this](const core::Senders& senders) { listener_.onSenders(senders); };
   return handlers;
 }
 

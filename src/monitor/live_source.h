@@ -66,6 +66,8 @@ class LiveSource {
     virtual void onWaiting(const core::Waiting& /*waiting*/) {}
     /// Messages of this publisher were dropped.
     virtual void onDropped(const ros1::Publication& /*publication*/) {}
+    /// Who sends now, as far as events do not say it.
+    virtual void onSenders(const core::Senders& /*senders*/) {}
     /// Who talks to whom has changed, or is known for the first time with what is wanted.
     virtual void onGraph(const ros1::Graph& /*graph*/) {}
     /// The master, and thus the robot, was started again. @param now ROS time [ns]

@@ -208,6 +208,12 @@ void Monitor::onWaiting(const core::Waiting& waiting) {
   }
 }
 
+void Monitor::onSenders(const core::Senders& senders) {
+  if (session_) {
+    session_->setSenders(senders);
+  }
+}
+
 void Monitor::onDropped(const ros1::Publication& publication) {
   if (session_) {
     session_->detector().onMissed(session_->typesOf(publication), live_->now());

@@ -172,6 +172,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void onWaiting(const core::Waiting& waiting) override;
   void onDropped(const ros1::Publication& publication) override;
   void onGraph(const ros1::Graph& graph) override;
+  void onSenders(const core::Senders& senders) override;
   void onMasterRestart(std::int64_t now) override;
   void onTick(std::int64_t now) override;
   void onReport() override;

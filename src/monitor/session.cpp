@@ -229,6 +229,13 @@ ros1::OwnOutput Session::ownOutput(const std::string& node) const {
   return {node, std::move(known), encoder_};
 }
 
+void Session::setSenders(const core::Senders& senders) {
+  for (const core::EventType& type : senders.played) {
+    intern(type);  // suspects have ids
+  }
+  detector_.setSenders(senders);
+}
+
 void Session::addEdges(const ros1::Graph& graph, const std::string& node) {
   ros1::addEdges(graph, node, *encoder_, *graph_);
   detector_.setMissing(ros1::missingIn(graph, *encoder_, subscriptions_));

@@ -106,6 +106,8 @@ class Session {
   /// victims: edges are added only. The detector learns who does not subscribe as in training.
   /// @param node full name of the monitor's process, which is left out
   void addEdges(const ros1::Graph& graph, const std::string& node);
+  /// Who sends from now on, as far as events do not say it.
+  void setSenders(const core::Senders& senders);
 
  private:
   /// Finds out how often messages came in training.

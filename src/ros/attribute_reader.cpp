@@ -24,9 +24,10 @@ bool beginsWithHeader(const std::string& definition, const std::string& datatype
 
 }  // namespace
 
-AttributeReader::AttributeReader(const std::string& definition, const std::string& datatype)
-    : has_header_(beginsWithHeader(definition, datatype)),
-      is_read_(datatype != "rosgraph_msgs/Log") {}
+AttributeReader::AttributeReader(const Connection& connection)
+    : has_header_(beginsWithHeader(connection.definition, connection.datatype)),
+      is_read_(connection.datatype != "rosgraph_msgs/Log"),
+      is_numbered_(!connection.latching) {}
 
 void AttributeReader::begin(std::uint64_t size) {
   size_ = size;
@@ -116,7 +117,7 @@ std::uint32_t AttributeReader::numberAt(std::size_t place) const {
 
 void AttributeReader::readHeader(std::int64_t now, core::Attributes& attributes) {
   const std::uint32_t number = numberAt(0);
-  if (last_number_) {
+  if (last_number_ && is_numbered_) {
     attributes.step = core::stepOf(*last_number_, number);
   }
   last_number_ = number;

@@ -193,6 +193,22 @@ std::set<core::SourceGraph::Subscription> missingIn(
   return missing;
 }
 
+std::set<core::EventType> playedIn(const Graph& graph, const Encoder& encoder) {
+  std::set<core::EventType> played;
+  for (const auto& [name, topic] : graph.topics) {
+    for (const std::string& node : topic.publishers) {
+      Connection connection;
+      connection.callerid = node;
+      connection.topic = name;
+      connection.datatype = topic.datatype;
+      if (const auto type = encoder.played(connection)) {
+        played.insert(*type);
+      }
+    }
+  }
+  return played;
+}
+
 std::string hostIn(const std::string& uri) {
   std::string host;
   std::uint32_t port = 0;

@@ -18,10 +18,19 @@ namespace {
 using core::Attributes;
 constexpr std::int64_t kNow = 1700000000000000000;
 
+AttributeReader readerOf(const std::string& definition, const std::string& datatype,
+                         bool latching = false) {
+  Connection connection;
+  connection.definition = definition;
+  connection.datatype = datatype;
+  connection.latching = latching;
+  return AttributeReader(connection);
+}
+
 template <typename Message>
-AttributeReader readerOf() {
+AttributeReader readerOf(bool latching = false) {
   namespace traits = ros::message_traits;
-  return {traits::definition<Message>(), traits::datatype<Message>()};
+  return readerOf(traits::definition<Message>(), traits::datatype<Message>(), latching);
 }
 
 template <typename Message>
@@ -54,16 +63,16 @@ sensor_msgs::Image image(std::uint32_t number, double age, std::size_t size = 10
 TEST(AttributeReader, KnowsAHeaderByTheDefinition) {
   EXPECT_TRUE(readerOf<sensor_msgs::Image>().hasHeader());
   EXPECT_FALSE(readerOf<std_msgs::String>().hasHeader());
-  EXPECT_FALSE(AttributeReader("", "*").hasHeader());
-  EXPECT_FALSE(AttributeReader("Header header\n", "a/B").hasHeader()) << "it is not defined";
+  EXPECT_FALSE(readerOf("", "*").hasHeader());
+  EXPECT_FALSE(readerOf("Header header\n", "a/B").hasHeader()) << "it is not defined";
   const std::string header =
       "====\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n";
-  EXPECT_TRUE(AttributeReader("# of it\nHeader header\nint8 x\n" + header, "a/B").hasHeader());
-  EXPECT_TRUE(AttributeReader("std_msgs/Header h\n" + header, "a/B").hasHeader());
-  EXPECT_FALSE(AttributeReader("int8 x\nHeader header\n" + header, "a/B").hasHeader());
-  EXPECT_FALSE(AttributeReader("Header[] headers\n" + header, "a/B").hasHeader());
-  EXPECT_FALSE(AttributeReader("Header header\n====\nMSG: std_msgs/Header\nuint8 other\n", "a/B")
-                   .hasHeader());
+  EXPECT_TRUE(readerOf("# of it\nHeader header\nint8 x\n" + header, "a/B").hasHeader());
+  EXPECT_TRUE(readerOf("std_msgs/Header h\n" + header, "a/B").hasHeader());
+  EXPECT_FALSE(readerOf("int8 x\nHeader header\n" + header, "a/B").hasHeader());
+  EXPECT_FALSE(readerOf("Header[] headers\n" + header, "a/B").hasHeader());
+  EXPECT_FALSE(
+      readerOf("Header header\n====\nMSG: std_msgs/Header\nuint8 other\n", "a/B").hasHeader());
 }
 
 TEST(AttributeReader, ReadsAgeNumberSizeAndContent) {
@@ -88,12 +97,22 @@ TEST(AttributeReader, ReadsAgeNumberSizeAndContent) {
 }
 
 TEST(AttributeReader, OfLinesForPeopleNothingIsKnown) {
-  AttributeReader reader(ros::message_traits::definition<sensor_msgs::Image>(),
-                         "rosgraph_msgs/Log");
+  AttributeReader reader =
+      readerOf(ros::message_traits::definition<sensor_msgs::Image>(), "rosgraph_msgs/Log");
   const std::vector<std::uint8_t> bytes = bytesOf(image(1, 0.02));
   EXPECT_EQ(read(reader, bytes), Attributes{});
   reader.begin(bytes.size());
   EXPECT_EQ(reader.next().begin, reader.next().end) << "nothing is to be read";
+}
+
+TEST(AttributeReader, ALatchingPublisherAlsoNumbersWhatItSendsToNewSubscribers) {
+  AttributeReader plain = readerOf<sensor_msgs::Image>();
+  AttributeReader latching = readerOf<sensor_msgs::Image>(true);
+  for (const std::uint32_t number : {1U, 2U, 4U}) {
+    const std::vector<std::uint8_t> bytes = bytesOf(image(number, 0.02));
+    EXPECT_EQ(read(plain, bytes).isAfterLoss(), number == 4);
+    EXPECT_EQ(read(latching, bytes).step, Attributes::Step::kNotKnown);
+  }
 }
 
 TEST(AttributeReader, AStampOfZeroIsNone) {

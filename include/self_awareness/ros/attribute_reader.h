@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "self_awareness/core/stream/attributes.h"
+#include "self_awareness/ros/encoding.h"
 
 namespace self_awareness::ros1 {
 
@@ -20,11 +21,11 @@ class AttributeReader {
   static constexpr std::uint64_t kBlocks = 8;
   static constexpr std::uint64_t kBlock = 512;  ///< [bytes]
 
-  /// @param definition of the messages, as in bags and in the headers of connections; one that
-  /// does not begin with a std_msgs/Header is one without
-  /// @param datatype of rosgraph_msgs/Log, nothing is known: its lines are for people, of any
-  /// length, and the same one may come again and again
-  AttributeReader(const std::string& definition, const std::string& datatype);
+  /// @param connection messages whose definition does not begin with a std_msgs/Header are without
+  /// one. Of rosgraph_msgs/Log, nothing is known: its lines are for people, of any length, and the
+  /// same one may come again and again. A latching publisher of rospy also numbers the copies that
+  /// new subscribers get: its numbers say nothing of losses.
+  explicit AttributeReader(const Connection& connection);
 
   /// Begins a message.
   /// @param size of the whole message [bytes]
@@ -45,6 +46,8 @@ class AttributeReader {
   core::Attributes end(std::int64_t now);
 
   bool hasHeader() const { return has_header_; }
+  /// The number of the last message (header.seq); none: it has none.
+  std::optional<std::uint32_t> number() const { return last_number_; }
 
  private:
   static constexpr std::size_t kHeader =
@@ -60,6 +63,7 @@ class AttributeReader {
 
   bool has_header_ = false;
   bool is_read_ = true;
+  bool is_numbered_ = true;
   std::uint64_t size_ = 0;      // of the message [bytes]
   std::uint64_t position_ = 0;  // in it [bytes]
   std::uint64_t content_ = 0;   // where its header has ended [bytes]

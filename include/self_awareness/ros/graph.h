@@ -73,6 +73,9 @@ std::set<core::SourceGraph::Subscription> missingIn(
     const Graph& graph, const Encoder& encoder,
     const std::set<core::SourceGraph::Subscription>& expected);
 
+/// What players publish on topics of the robot (SenderWatch): types whose sources are the players.
+std::set<core::EventType> playedIn(const Graph& graph, const Encoder& encoder);
+
 /// The name or the address in the URI of a node's XML-RPC server; empty: there is none.
 std::string hostIn(const std::string& uri);
 

@@ -17,8 +17,8 @@
 #include "core/evidence/blame/never_heard.h"
 #include "core/evidence/blame/new_mode.h"
 #include "core/evidence/blame/silent_together.h"
-#include "core/evidence/blame/strangers.h"
 #include "core/evidence/blame/unsubscribed.h"
+#include "core/evidence/blame/who_sends.h"
 #include "core/evidence/channel/scorer.h"
 
 namespace self_awareness::core::evidence {
@@ -48,7 +48,7 @@ class Judge : public core::Judge {
       scorer_.enter(event);  // one that training never saw is no stranger
       return std::nullopt;
     }
-    const bool unknown = strangers_.add(event, excused_);
+    const bool unknown = who_sends_.add(event, excused_);
     const std::optional<std::int64_t> gap = scorer_.add(event);
     if (model_->knows(event.id)) {
       events_.add(event, scorer_.stalled());
@@ -65,18 +65,15 @@ class Judge : public core::Judge {
   void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
   void accept(const Acceptances& accepted) override {
     excused_.accept(accepted);
-    never_heard_.excuse(excused_.mayBeSilent());
     unsubscribed_.accept(accepted);
     new_mode_.accept(accepted);
   }
   bool isAccepted(EventId id, Kind kind) const override { return excused_.isExcused(id, kind); }
-  void setOptional(const std::vector<std::string>& patterns) override {
-    excused_.setOptional(patterns);
-    never_heard_.excuse(excused_.mayBeSilent());
-  }
+  void setOptional(const std::vector<std::string>& names) override { excused_.setOptional(names); }
   void setMissing(const std::set<SourceGraph::Subscription>& missing) override {
     unsubscribed_.set(missing);
   }
+  void setSenders(const Senders& senders) override { who_sends_.set(senders); }
   void settle(const Event& first, std::int64_t settle_time) override;
   void leaveOut(const std::vector<EventId>& ids, std::int64_t until) override;
   Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override;
@@ -92,12 +89,13 @@ class Judge : public core::Judge {
   void forgetStarts(std::int64_t now);
   /// Takes back what the tracks say of event types that settle.
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
-  /// Finds the shares of a window, without what is not judged now.
-  /// @param evidence by track
+  /// Finds the shares of a window by the evidence, without what is not judged now.
   void weigh(const Window& window, std::int64_t end, std::vector<double>& evidence);
   /// Takes back shares that are no fault of the component: all are silent, or a mode explains it.
   /// Tells what is left of them, but for a mode that training never saw.
   void excuse(const Window& window, std::int64_t end, Judgement& judgement);
+  /// Excuses who does not come, or is unusual, because of who sends.
+  void excuseBySenders(const Window& window);
   /// The channels that speak against somebody, as Judgement::evidence.
   std::string evidenceOf(const Judgement& judgement) const;
   /// Whether a track beyond its limit is so beyond all doubt.
@@ -116,7 +114,7 @@ class Judge : public core::Judge {
   std::shared_ptr<const Upstream> upstream_;
   Blame blame_;
   NeverHeard never_heard_;
-  Strangers strangers_;
+  WhoSends who_sends_;
   Excused excused_;
   Unsubscribed unsubscribed_;
   BusyMachine busy_machine_;
@@ -143,7 +141,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       upstream_(std::make_shared<Upstream>(model_->components(), graph)),
       blame_(model_, upstream_),
       never_heard_(*model_, limits_.value_or(Limits{}), upstream_),
-      strangers_(*model_, heard, graph),
+      who_sends_(model_, heard, graph, never_heard_.expected()),
       excused_(model_, std::move(heard)),
       unsubscribed_(*model_),
       busy_machine_(model_),
@@ -186,7 +184,7 @@ void Judge::restart() {
   scorer_.restart();
   events_.restart();
   never_heard_.restart();
-  strangers_.restart();
+  who_sends_.restart();
   unsubscribed_.restart();
   busy_machine_.restart();
   new_mode_.restart();
@@ -234,6 +232,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   if (!limits_) {
     return judgement;
   }
+  excuseBySenders(window);
   weigh(window, end, evidence);
   never_heard_.closeWindow(end, settle_time_);
   unsubscribed_.closeWindow(end);
@@ -241,26 +240,38 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   const double largest = largestOf(shares_);
   judgement.score = -std::max(largest, never_heard_.share());
   judgement.threshold = kThreshold;
-  judgement.busy = busy_machine_.closeWindow(shares_, scorer_, *judgement.score < kThreshold);
-  if (judgement.busy && (judgement.busy->late > 0 ||
-                         judgement.busy->starved > model_->tuning().longest_starvation)) {
+  judgement.busy =
+      busy_machine_.closeWindow(shares_, scorer_, events_, *judgement.score < kThreshold);
+  if (who_sends_.isAbnormal() ||
+      (judgement.busy && (judgement.busy->late > 0 ||
+                          judgement.busy->starved > model_->tuning().longest_starvation))) {
     // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
     judgement.score = std::min(*judgement.score, kStillBusy);
   }
   judgement.abnormal = *judgement.score < kThreshold;
   judgement.certain = never_heard_.share() > 1 || (largest > 1 && isCertain());
-  judgement.suspicious = never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy;
+  judgement.suspicious = never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy ||
+                         !who_sends_.evidence().empty();
   judgement.evidence = evidenceOf(judgement);
   const bool somebody = largest > 1 || never_heard_.share() > 0 || unsubscribed_.any() ||
                         (judgement.busy && judgement.busy->late > 0);
   if (suspects != NameSuspects::kNever && somebody) {
     judgement.suspects = namedIn(window, largest > 1);
-  } else if (suspects == NameSuspects::kAlways) {
+  } else if (suspects == NameSuspects::kAlways ||
+             (suspects != NameSuspects::kNever && !who_sends_.evidence().empty())) {
     // Who is within his own range is no suspect because somebody else is unknown.
-    judgement.suspects = strangers_.unknown(window, scorer_);
+    judgement.suspects = who_sends_.alone(window, scorer_, suspects == NameSuspects::kAlways);
   }
   excused_.leaveOut(judgement.suspects);
   return judgement;
+}
+
+void Judge::excuseBySenders(const Window& window) {
+  who_sends_.closeWindow(scorer_.heard(), excused_);
+  never_heard_.excuse(who_sends_.needNotCome(excused_.mayBeSilent()));
+  for (const EventId id : who_sends_.doubled()) {
+    settleUntil(id, window.start + window_ + settle_time_);
+  }
 }
 
 void Judge::weigh(const Window& window, std::int64_t end, std::vector<double>& evidence) {
@@ -271,14 +282,15 @@ void Judge::weigh(const Window& window, std::int64_t end, std::vector<double>& e
   excused_.leaveOut(scorer_.heard(), evidence);
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     // Most tracks say nothing most of the time, and a division takes its time.
-    const double share = evidence[track] > 0 ? evidence[track] / limits_->tracks[track] : 0;
+    const bool counts = evidence[track] > 0 && !who_sends_.moved()[model_->tracks()[track].to];
+    const double share = counts ? evidence[track] / limits_->tracks[track] : 0;
     shares_[track] = std::isnan(share) ? 0 : share;
   }
 }
 
 void Judge::excuse(const Window& window, std::int64_t end, Judgement& judgement) {
   if (largestOf(shares_) > 1) {
-    judgement.silent = silent_together_.find(shares_, *limits_, scorer_, strangers_.silences(end));
+    judgement.silent = silent_together_.find(shares_, *limits_, scorer_, who_sends_.silences(end));
     if (!judgement.silent) {
       judgement.mode =
           new_mode_.excuseAccepted(shares_, *limits_, scorer_, excused_.mayBeSilent());
@@ -307,7 +319,7 @@ std::vector<Disarmed> Judge::disarmed() const {
 }
 
 std::string Judge::evidenceOf(const Judgement& judgement) const {
-  std::set<std::string> channels;
+  std::set<std::string> channels = who_sends_.evidence();
   for (std::size_t track = 0; track < shares_.size(); ++track) {
     if (shares_[track] > 1) {
       channels.insert(channelLabel(model_->tracks()[track]));
@@ -331,17 +343,8 @@ std::string Judge::evidenceOf(const Judgement& judgement) const {
 
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
   std::vector<Suspect> first = blame_.suspects(shares_, scorer_, events_, window);
+  who_sends_.dropMovers(first);
   std::vector<Suspect> second = never_heard_.suspects();
-  // What was never heard owes answers, too, but that is not what is wrong with it.
-  for (Suspect& suspect : first) {
-    const auto same = std::find_if(second.begin(), second.end(),
-                                   [&](const Suspect& other) { return other.id == suspect.id; });
-    if (same != second.end()) {
-      const bool abnormal = suspect.abnormal || same->abnormal;
-      suspect = *same;
-      suspect.abnormal = abnormal;
-    }
-  }
   if (!silent_first || (!first.empty() && never_heard_.isMissedBy(first.front().id))) {
     std::swap(first, second);
   }
@@ -352,23 +355,22 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
       named.push_back(suspect);
     }
   };
-  // A stranger explains what is unusual, but for a death. However many there are, they do not hide
-  // who is to blame.
+  // A stranger explains what is unusual, but for a death. Many do not hide who is to blame.
   const auto died = [](const Suspect& suspect) { return isAbsence(suspect.reason.kind); };
   if (!first.empty() && died(first.front()) &&
       std::any_of(first.begin(), first.end(),
                   [&](const Suspect& suspect) { return suspect.abnormal && died(suspect); })) {
     add(first.front());
   }
-  const std::vector<Suspect> strangers = strangers_.suspects(window, scorer_);
-  if (!strangers.empty()) {
-    add(strangers.front());
-  }
+  const std::vector<Suspect> causes = who_sends_.causes(window, scorer_);
+  std::for_each(causes.begin(), causes.end(), add);
   // Who does not subscribe says what it always says: that explains nothing beyond a limit.
   const std::vector<Suspect>& deaf = unsubscribed_.suspects();
-  using Order = std::array<const std::vector<Suspect>*, 4>;
-  const Order order = silent_first ? Order{&first, &second, &strangers, &deaf}
-                                   : Order{&first, &deaf, &second, &strangers};
+  const std::vector<Suspect> strangers = who_sends_.strangers(window, scorer_);
+  const std::vector<Suspect> moved = who_sends_.movers();
+  using Order = std::array<const std::vector<Suspect>*, 5>;
+  const Order order = silent_first ? Order{&first, &second, &strangers, &deaf, &moved}
+                                   : Order{&first, &moved, &deaf, &second, &strangers};
   for (const std::vector<Suspect>* suspects : order) {
     std::for_each(suspects->begin(), suspects->end(), add);
   }

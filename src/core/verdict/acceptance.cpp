@@ -46,6 +46,7 @@ Acceptance::Extent Acceptance::extent() const {
       return Extent::kConnections;
     case Kind::kBusyMachine:
     case Kind::kAllSilent:
+    case Kind::kTwoSenders:
       return Extent::kNothing;
     case Kind::kNewMode:
       return Extent::kMode;

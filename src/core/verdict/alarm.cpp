@@ -34,6 +34,33 @@ std::vector<Suspect> withComponents(std::vector<Suspect> suspects, const Vocabul
   return suspects;
 }
 
+void blameFirstOf(const std::vector<Suspect>& suspects, Alarm& alarm) {
+  if (!suspects.empty()) {
+    alarm.culprit = suspects.front().component;
+    alarm.reason = suspects.front().reason.words;
+    alarm.kind = suspects.front().reason.kind;
+  }
+}
+
+/// Takes in on how many topics somebody is there who should not be: that shows with time.
+void growWith(const Verdict& verdict, Alarm& alarm) {
+  for (Suspect& suspect : alarm.suspects) {
+    for (const Suspect& now : verdict.suspects) {
+      if (now.id == suspect.id && now.reason.kind == suspect.reason.kind &&
+          (now.reason.kind == Kind::kTwoSenders || !now.reason.topics.empty())) {
+        suspect.reason = now.reason;
+      }
+    }
+  }
+  const Reason& first = alarm.suspects.front().reason;
+  if (alarm.kind == first.kind && (first.kind == Kind::kTwoSenders || !first.topics.empty())) {
+    alarm.reason = first.words;
+  }
+  if (alarm.kind == Kind::kTwoSenders) {
+    alarm.culprit.clear();  // who has the name of another one is not to blame
+  }
+}
+
 }  // namespace
 
 std::optional<Alarm> Alarms::add(const Verdict& verdict, std::int64_t window,
@@ -88,16 +115,19 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
       !(verdict.evidence.empty() && verdict.suspects.empty())) {
     alarm.evidence = verdict.evidence;
     alarm.suspects = withComponents(verdict.suspects, vocabulary);
-    alarm.culprit = alarm.suspects.empty() ? "" : alarm.suspects.front().component;
-    alarm.reason = alarm.suspects.empty() ? "" : alarm.suspects.front().reason.words;
-    alarm.kind = !alarm.suspects.empty() ? alarm.suspects.front().reason.kind
-                 : verdict.silent        ? kindOf(*verdict.silent)
-                                         : Kind::kOutOfOrder;
+    alarm.culprit.clear();
+    alarm.reason.clear();
+    alarm.kind = verdict.silent ? kindOf(*verdict.silent) : Kind::kOutOfOrder;
+    blameFirstOf(alarm.suspects, alarm);
+  }
+  if (stands && !alarm.suspects.empty()) {
+    growWith(verdict, alarm);
   }
   if (verdict.busy && !alarm.busy) {
     alarm.busy = verdict.busy;
   }
-  if (stands && alarm.busy && isOfTime(alarm.kind)) {
+  // What began before stays what it was: also below.
+  if (stands && alarm.busy && alarm.busy->since <= alarm.begin && isOfTime(alarm.kind)) {
     alarm.kind = Kind::kBusyMachine;
     alarm.culprit.clear();
     alarm.reason.clear();
@@ -106,12 +136,17 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
       (!alarm.silent || verdict.silent->components.size() > alarm.silent->components.size())) {
     alarm.silent = verdict.silent;
   }
-  // Who died before, on another computer, is still to blame; a machine that is busy no more is
-  // not.
+  // A machine that is busy no more is not to blame.
+  const bool was_busy = stands && alarm.kind == Kind::kBusyMachine && !verdict.busy;
+  if (was_busy && !verdict.suspects.empty() && verdict.suspects.front().abnormal &&
+      isAbsence(verdict.suspects.front().reason.kind)) {
+    blameFirstOf(withComponents(verdict.suspects, vocabulary), alarm);
+  }
   if (stands && alarm.silent &&
       (alarm.kind == Kind::kAllSilent || alarm.kind == Kind::kNewMode ||
-       (alarm.kind == Kind::kBusyMachine && verdict.silent && !verdict.busy) ||
-       (alarm.kind == Kind::kDied && alarm.silent->has(alarm.culprit)))) {
+       (was_busy && verdict.silent) ||
+       (alarm.kind == Kind::kDied && alarm.silent->since <= alarm.begin &&
+        alarm.silent->has(alarm.culprit)))) {
     alarm.kind = kindOf(*alarm.silent);
     alarm.culprit.clear();
     alarm.reason = describe(*alarm.silent);

@@ -13,6 +13,12 @@ namespace {
 // long [ns].
 constexpr std::int64_t kBacklog = 3 * kNanosecondsPerSecond;
 
+/// Whether somebody is a suspect for being there, or for not being there.
+bool isOfPresence(const Suspect& suspect) {
+  const Kind kind = suspect.reason.kind;
+  return kind == Kind::kNeverCame || kind == Kind::kStranger || kind == Kind::kTwoSenders;
+}
+
 /// Makes a window suspicious.
 void addEvidence(Judgement& judgement, const std::string& evidence) {
   judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + evidence;
@@ -225,8 +231,11 @@ void Detector::close(const Window& window, std::int64_t end) {
     silent_ = 0;
   }
   const std::vector<Suspect> named_first = name(verdict.suspects, verdict.changed, window_end);
-  // Who is new is told once only: not even a suspicion that stands may swallow it.
-  if ((verdict.alarm || (verdict.suspicion && unknown)) && !verdict.changed &&
+  // Who is new, or missing, is told once only: not even a suspicion that stands may swallow it.
+  const bool is_news =
+      unknown || std::any_of(named_first.begin(), named_first.end(),
+                             [](const Suspect& each) { return isOfPresence(each); });
+  if ((verdict.alarm || (verdict.suspicion && is_news)) && !verdict.changed &&
       !named_first.empty()) {
     verdict.new_suspects = named_first;
     verdict.changed = true;
@@ -247,7 +256,7 @@ std::vector<Suspect> Detector::name(std::vector<Suspect>& suspects, bool begins,
                                                 suspect.component.empty() ? suspect.id : 0);
     const auto named = named_.find(owner);
     suspect.since = named == named_.end() ? end : named->second;
-    if (named == named_.end() && (begins || suspect.abnormal)) {
+    if (named == named_.end() && (begins || suspect.abnormal || isOfPresence(suspect))) {
       named_.emplace(owner, end);
       named_first.push_back(suspect);
     }

@@ -1,9 +1,31 @@
 #include "self_awareness/core/verdict/suspect.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
 namespace self_awareness::core {
+namespace {
+
+constexpr std::size_t kMostNamed = 3;
+constexpr double kPause = 2;  // of who sends on [s]
+
+/// "a", "a and b", "a, b and c", or "a, b, c and 4 more".
+std::string list(const std::vector<std::string>& names) {
+  const std::size_t shown = std::min(names.size(), kMostNamed);
+  std::string words;
+  for (std::size_t k = 0; k < shown; ++k) {
+    words += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
+  }
+  return shown == names.size() ? words
+                               : words + " and " + std::to_string(names.size() - shown) + " more";
+}
+
+std::string number(std::size_t count, const std::string& of) {
+  return std::to_string(count) + " " + of + (count == 1 ? "" : "s");
+}
+
+}  // namespace
 
 std::string toString(Kind kind) {
   switch (kind) {
@@ -39,12 +61,14 @@ std::string toString(Kind kind) {
       return "all silent";
     case Kind::kNewMode:
       return "new mode";
+    case Kind::kTwoSenders:
+      return "two senders";
   }
   throw std::invalid_argument("a kind without a name");
 }
 
 std::optional<Kind> kindOf(const std::string& name) {
-  for (int kind = 0; kind <= static_cast<int>(Kind::kNewMode); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(Kind::kTwoSenders); ++kind) {
     if (toString(static_cast<Kind>(kind)) == name) {
       return static_cast<Kind>(kind);
     }
@@ -78,6 +102,54 @@ Reason strangerBefore(double age) {
   char text[80];
   std::snprintf(text, sizeof text, "never seen in training, the last one %.1f s ago", age);
   reason.words = text;
+  return reason;
+}
+
+Reason movedTo(const std::string& source, bool known, const std::vector<std::string>& topics,
+               const std::vector<std::string>& before, double age) {
+  Reason reason;
+  reason.kind = Kind::kStranger;
+  reason.unit = unit::kSeconds;
+  reason.value = age;
+  reason.topics = topics;
+  reason.words = list(topics) + (topics.size() == 1 ? " comes" : " come") + " from " + source +
+                 " now, in training from " + list(before);
+  if (age > kPause) {
+    char text[60];
+    std::snprintf(text, sizeof text, ", the last one %.1f s ago", age);
+    reason.words += text;
+  }
+  // Another name renames all that a source sends.
+  const std::string rename =
+      known || before.size() > 1 ? "" : " with --rename " + source + " " + before.front();
+  reason.words += "; not watched until you train again" + rename +
+                  "; to accept it: ~accept \"{component: " + source + ", kind: stranger}\"";
+  return reason;
+}
+
+Reason playsOn(const std::string& player, const std::vector<std::string>& topics) {
+  Reason reason;
+  reason.kind = Kind::kStranger;
+  reason.topics = topics;
+  reason.words =
+      player + " plays on " + number(topics.size(), "topic") + " of this robot: " + list(topics);
+  return reason;
+}
+
+Reason comesFromTwo(const std::set<std::pair<std::string, std::string>>& topics, bool all) {
+  std::set<std::string> components;
+  for (const auto& [component, topic] : topics) {
+    components.insert(component);
+  }
+  const std::string of =
+      components.size() == 1 ? *components.begin() : number(components.size(), "node");
+  Reason reason;
+  reason.kind = Kind::kTwoSenders;
+  reason.words = (topics.size() == 1 ? topics.begin()->second
+                  : all              ? "every topic"
+                                     : number(topics.size(), "topic")) +
+                 " of " + of + (topics.size() == 1 || all ? " comes" : " come") +
+                 " from two senders of one name";
   return reason;
 }
 

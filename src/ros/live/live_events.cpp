@@ -31,7 +31,12 @@ LiveEvents::LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_s
       handlers_(std::move(handlers)),
       wake_(boost::make_shared<Wake>(handlers_.on_arrivals)),
       arrivals_(queue_size,
-                [this] { node_handle_.getCallbackQueue()->addCallback(wake_, wakeId()); }) {}
+                [this] { node_handle_.getCallbackQueue()->addCallback(wake_, wakeId()); }),
+      senders_([this](std::int64_t /*now*/, const core::Senders& senders) {
+        if (handlers_.on_senders) {
+          handlers_.on_senders(senders);
+        }
+      }) {}
 
 LiveEvents::~LiveEvents() {
   node_handle_.getCallbackQueue()->removeByID(wakeId());
@@ -47,6 +52,7 @@ void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput ow
     live.held.clear();  // ids of another encoder
     live.held_until.reset();
   }
+  senders_.restart();
   encodeAgain();
   mode_again_ = true;
 }
@@ -59,7 +65,9 @@ void LiveEvents::setGraph(const Graph& graph) {
 
 void LiveEvents::encodeAgain() {
   for (auto& [key, live] : connections_) {
-    live.encoder = connect(connectionFrom(*live.header, live.topic->name));
+    const Connection connection = connectionFrom(*live.header, live.topic->name);
+    live.encoder = connect(connection);
+    live.link = senders_.connect(connection, *encoder_);
     if (live.encoder) {
       live.encoder->accept();  // the first message came before
     } else {
@@ -122,6 +130,7 @@ void LiveEvents::deliver() {
     }
   }
   release();
+  senders_.advance(steadyNow());
   delivered_.clear();  // now: whether a connection is closed is seen by the users of its header
 }
 
@@ -136,6 +145,9 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     return;
   }
   LiveConnection& live = connectionOf(arrival);
+  if (live.link) {
+    senders_.add(arrival.steady, *live.link, std::nullopt);  // a connection is one sender's
+  }
   std::optional<ConnectionEncoder>& encoder = live.encoder;
   if (!encoder) {
     return;
@@ -232,7 +244,9 @@ LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {
   live.topic = arrival.topic;
   if (is_new) {
     live.header = arrival.header;
-    live.encoder = connect(connectionFrom(*arrival.header, arrival.topic->name));
+    const Connection connection = connectionFrom(*arrival.header, arrival.topic->name);
+    live.encoder = connect(connection);
+    live.link = senders_.connect(connection, *encoder_);
   }
   chooseContent(*live.topic);
   return live;

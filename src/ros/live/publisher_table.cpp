@@ -20,6 +20,8 @@ using core::kNanosecondsPerSecond;
 constexpr std::size_t kMostAsking = 64;
 // Thousands of dead nodes stay registered where nobody cleans up.
 constexpr double kMostAttempts = 200;  // a second
+// Of who is no more, nothing comes for longer.
+constexpr std::int64_t kStillSpeaks = 10 * kNanosecondsPerSecond;
 constexpr std::int64_t kPatience = 3 * kNanosecondsPerSecond;
 constexpr std::int64_t kStandsFirmly = 5 * kNanosecondsPerSecond;
 constexpr std::int64_t kNamedAfter = 2 * kNanosecondsPerSecond;
@@ -126,7 +128,7 @@ void PublisherTable::attend(std::int64_t now) {
       due.push_back(next);
     }
   }
-  closeReplaced(standing);
+  closeReplaced(standing, now);
   tokens_ = std::min(kMostAttempts, tokens_ + kMostAttempts * core::toSeconds(now - counted_at_));
   counted_at_ = now;
   std::sort(due.begin(), due.end(), [](const Due& a, const Due& b) {
@@ -140,13 +142,16 @@ void PublisherTable::attend(std::int64_t now) {
   }
 }
 
-void PublisherTable::closeReplaced(const std::set<std::pair<std::string, std::string>>& standing) {
+void PublisherTable::closeReplaced(const std::set<std::pair<std::string, std::string>>& standing,
+                                   std::int64_t now) {
   for (auto& [uri, node] : nodes_) {
     auto& publications = node.publications;
     for (auto each = publications.begin(); each != publications.end();) {
       const Publication& publication = each->second;
-      const bool over = !publication.named &&
-                        (!publication.link || standing.count({each->first, publication.node}) > 0);
+      const bool over =
+          !publication.named &&
+          (!publication.link || (standing.count({each->first, publication.node}) > 0 &&
+                                 now - publication.link->heardAt() > kStillSpeaks));
       each = over ? publications.erase(each) : std::next(each);
     }
   }

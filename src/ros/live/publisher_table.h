@@ -75,8 +75,10 @@ class PublisherTable {
   /// Closes what is not wanted any more.
   void forgetOthers(const Listening& listening);
   void watchLink(Publication& publication, std::int64_t now);
-  /// Closes connections to a node that is connected at a new address.
-  void closeReplaced(const std::set<std::pair<std::string, std::string>>& standing);
+  /// Closes connections to a node that is connected at a new address, unless it still speaks: then
+  /// there are two of its name.
+  void closeReplaced(const std::set<std::pair<std::string, std::string>>& standing,
+                     std::int64_t now);
   void ask(const Due& due, std::int64_t now);
   void advance(Node& node, std::int64_t now);
   void onAnswer(Node& node, std::int64_t now);

@@ -119,7 +119,7 @@ void TopicLink::onHeader(const Bytes& bytes, std::uint32_t size) {
   } else {
     header_ = header.getValues();
     const Connection connection = connectionFrom(*header_, topic_->name);
-    attributes_.emplace(connection.definition, connection.datatype);
+    attributes_.emplace(connection);
     answered_ = true;
     read(sizeof(std::uint32_t), &TopicLink::onLength);
   }
@@ -175,6 +175,7 @@ void TopicLink::handOn() {
   dropContent();
   const std::int64_t now = rosNow();
   const std::int64_t steady = steadyNow();
+  heard_at_ = steady;
   const core::Attributes attributes = attributes_->end(now);
   const auto shared = shared_.lock();
   if (!shared->closed) {

@@ -48,6 +48,8 @@ class TopicLink : public std::enable_shared_from_this<TopicLink> {
   /// Whether the publisher has answered, and the connection stands.
   bool stands() const { return answered_ && !lost_; }
   bool lost() const { return lost_; }
+  /// When the last message came, by the steady clock [ns]; 0: none did.
+  std::int64_t heardAt() const { return heard_at_; }
   /// Why it was lost.
   std::string why() const;
 
@@ -83,6 +85,7 @@ class TopicLink : public std::enable_shared_from_this<TopicLink> {
   std::shared_ptr<Content> content_;           // of the message, so far; none: it is not read
   std::atomic<bool> answered_{false};
   std::atomic<bool> lost_{false};
+  std::atomic<std::int64_t> heard_at_{0};
   Guarded<Shared> shared_;
 };
 

@@ -130,6 +130,42 @@ TEST_F(AlarmsTest, ABusyMachineDoesNotExcuseWhoDied) {
   EXPECT_TRUE(alarms_.standing()->busy);
 }
 
+TEST_F(AlarmsTest, WhatBeganBeforeAnExcuseStaysWhatItWas) {
+  const std::vector<Suspect> dead{suspect(1, Kind::kDied)};
+  const std::vector<Suspect> slow{suspect(1, Kind::kSlow)};
+  const std::int64_t later = kStart + 400 * kWindow;
+  for (const bool mode : {false, true}) {
+    alarms_ = {};
+    add(verdict(kAlarm, dead));
+    Verdict silent = verdict(kAlarm, dead);
+    silent.silent = Silent{{}, {"/a", "/b"}, later, mode};
+    add(silent);
+    EXPECT_EQ(alarms_.standing()->kind, Kind::kDied);
+    EXPECT_EQ(alarms_.standing()->culprit, "/b");
+  }
+  alarms_ = {};
+  add(verdict(kAlarm, slow));
+  Verdict busy = verdict(kAlarm, slow);
+  busy.busy = Busy{5, 9, 0, later};
+  add(busy);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kSlow);
+  EXPECT_EQ(alarms_.standing()->culprit, "/b");
+}
+
+TEST_F(AlarmsTest, WhoIsDeadOnceTheMachineIsFreeIsToBlame) {
+  Verdict busy = verdict(kAlarm, {suspect(1, Kind::kLate)});
+  busy.busy = Busy{12, 26};
+  add(busy);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
+  Suspect dead = suspect(0, Kind::kDied);
+  add(verdict(kAlarm, {dead}));
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine) << "within its limit";
+  dead.abnormal = true;
+  add(verdict(kAlarm, {dead}));
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kDied);
+  EXPECT_EQ(alarms_.standing()->culprit, "/a");
+}
+
 TEST_F(AlarmsTest, WhoWasSilentFirstIsNotToBlameWhereAllAre) {
   add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
   EXPECT_EQ(alarms_.standing()->culprit, "/b");

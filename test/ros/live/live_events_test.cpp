@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <boost/make_shared.hpp>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -60,6 +61,7 @@ class LiveEventsTest : public testing::Test {
     };
     handlers.time = [this](std::int64_t ros_time, std::int64_t) { return ros_time + ahead_; };
     handlers.on_arrivals = [this] { ++wakes_; };
+    handlers.on_senders = [this](const core::Senders& senders) { senders_ = senders; };
     live_events_ = std::make_unique<LiveEvents>(node_handle_, kQueueSize, handlers);
     subscriptions_ = std::make_unique<Subscriptions>(live_events_->arrivals());
     encode({});
@@ -116,6 +118,13 @@ class LiveEventsTest : public testing::Test {
     return types_;
   }
 
+  /// A connection to a node.
+  static boost::shared_ptr<ros::M_string> connection(const std::string& node) {
+    return boost::make_shared<ros::M_string>(ros::M_string{
+        {"callerid", node}, {"type", "std_msgs/String"}, {"message_definition", "string data\n"}});
+  }
+
+  core::Senders senders_;
   using Types = std::vector<std::string>;
   ros::NodeHandle node_handle_;
   ros::CallbackQueue queue_;
@@ -371,6 +380,29 @@ TEST_F(LiveEventsTest, WakesBeforeItsQueueIsFull) {
   publish(publisher, message(""));
   EXPECT_EQ(wakes_, before + 1);
   EXPECT_EQ(live_events_->dropped(), 0U);
+}
+
+TEST_F(LiveEventsTest, TwoConnectionsOfOneNameThatSpeakInTurnAreTwoSenders) {
+  const auto topic = std::make_shared<Arrival::Topic>("/scan");
+  const auto one = connection("/lidar");
+  const auto other = connection("/lidar");
+  auto now = static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
+  const auto hear = [&](const boost::shared_ptr<ros::M_string>& header) {
+    now += kWindow;
+    live_events_->arrivals().add({topic, header, now, now, nullptr, {}});
+  };
+  for (int k = 0; k < 10; ++k) {
+    hear(one);
+  }
+  hear(other);
+  delivered();
+  EXPECT_TRUE(senders_.doubled.empty()) << "it was started again";
+  for (int k = 0; k < 5; ++k) {
+    hear(one);
+    hear(other);
+  }
+  delivered();
+  EXPECT_EQ(senders_.doubled, std::set<core::SourceGraph::Publication>({{"/lidar", "/scan"}}));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Acceptance {
     kTime,         ///< when and how often it comes; that it falls silent is still judged
     kMessages,     ///< how old, complete, large and new its messages are
     kConnections,  ///< what it does not subscribe to
-    kNothing,      ///< what no component does: a busy machine, all silent
+    kNothing,      ///< what no component does: a busy machine, all silent, two senders
     kMode,         ///< that components are off together while others go on
     kAll           ///< whatever it does
   };

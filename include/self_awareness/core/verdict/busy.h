@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace self_awareness::core {
@@ -11,6 +12,7 @@ struct Busy {
   std::size_t late = 0;        ///< 0: none, or not enough to tell by them
   std::size_t components = 0;  ///< that are judged
   double starved = 0;          ///< for how long processes have been waiting [s]; 0: they do not
+  std::int64_t since = 0;      ///< what was unusual before then has another cause [ns]
 };
 
 /// "the machine may be busy (load 7.9 on 2 cores): 12 of 26 components are late", or "the machine

@@ -86,6 +86,8 @@ class Detector : private WindowObserver {
   void setMissing(const std::set<SourceGraph::Subscription>& missing) {
     judge_->setMissing(missing);
   }
+  /// Takes note of who sends from now on, as far as events do not say it.
+  void setSenders(const Senders& senders) { judge_->setSenders(senders); }
   /// Takes note that this program was too slow, and has missed events of these types up to the
   /// time `now` [ns]: they settle as if they were new, for 3 s at least.
   void onMissed(const std::vector<EventId>& ids, std::int64_t now);

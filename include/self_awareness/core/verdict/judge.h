@@ -11,6 +11,7 @@
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/busy.h"
+#include "self_awareness/core/verdict/senders.h"
 #include "self_awareness/core/verdict/silent.h"
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/core/verdict/suspect.h"
@@ -87,6 +88,9 @@ class Judge {
   /// from now on, although the source is known to the master. Who judges by events alone has no
   /// use for it.
   virtual void setMissing(const std::set<SourceGraph::Subscription>& /*missing*/) {}
+  /// Takes note of who sends from now on, as far as events do not say it. Who judges by events
+  /// alone has no use for it.
+  virtual void setSenders(const Senders& /*senders*/) {}
   /// Judges a window that is over. Its events are all those taken in since the window before it.
   /// Without calibration, the judge names no suspects.
   /// @param end up to where the window is known [ns], as for WindowObserver::close()

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "self_awareness/core/stream/event.h"
@@ -43,11 +45,12 @@ enum class Kind {
   kBusyMachine,   ///< of an alarm: many are late at once, and none of them is to blame
   kAllSilent,     ///< of an alarm: nobody is heard any more
   kNewMode,       ///< of a suspicion: some that do not hear each other stopped, and others go on
+  kTwoSenders,    ///< its topics come from two senders of its name
 };
 
 /// "died", "slow", "fast", "late", "early", "out of order", "never came", "stranger", "not
-/// subscribed", "stale", "lossy", "other size", "stuck", "busy machine", "all silent" or "new
-/// mode".
+/// subscribed", "stale", "lossy", "other size", "stuck", "busy machine", "all silent", "new mode"
+/// or "two senders".
 std::string toString(Kind kind);
 /// The kind of this name; none: there is no such kind.
 std::optional<Kind> kindOf(const std::string& name);
@@ -81,7 +84,9 @@ struct Reason {
   std::size_t of = 0;             ///< delays that the value is of; 0: it is not of delays
   std::size_t times = 0;          ///< of them, unusual
   std::string words;              ///< "silent for 2.31 s, usually every 0.083 s, at most 0.104 s"
-  std::vector<std::string> topics;  ///< that it does not subscribe to, of kUnsubscribed
+  /// Of kUnsubscribed, what it does not subscribe to; of kStranger, what it has from others, or
+  /// plays on.
+  std::vector<std::string> topics;
   /// Of one that died, time without such an event [s], whatever the value is of; NaN: not known.
   double silence = kNone;
 };
@@ -92,6 +97,21 @@ Reason strangerIn(std::size_t events);
 /// The same of one that came before the window.
 /// @param age of its last event [s]
 Reason strangerBefore(double age);
+
+/// Why a stranger is one that sends what came from others in training, who were not heard.
+/// @param topics on which it does
+/// @param known whether it sent other things in training
+/// @param before who sent it in training
+/// @param age of its last event [s]
+Reason movedTo(const std::string& source, bool known, const std::vector<std::string>& topics,
+               const std::vector<std::string>& before, double age);
+/// Why a stranger is one that plays a recording on topics of the robot.
+Reason playsOn(const std::string& player, const std::vector<std::string>& topics);
+/// Why a component is a suspect whose topics come from two senders of its name, alone or among
+/// others.
+/// @param topics by component, all that do
+/// @param all whether the components have no others
+Reason comesFromTwo(const std::set<std::pair<std::string, std::string>>& topics, bool all);
 
 /// Who may have made a window abnormal, and why (docs/method.md, sections 2.5 and 6).
 struct Suspect {

@@ -70,11 +70,9 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
   std::map<EventId, std::size_t> missing;     // tracks
   std::map<EventId, std::size_t> unanswered;  // the same
   for (std::size_t track = 0; track < shares.size(); ++track) {
-    if (shares[track] > tuning_.near_limit && model_->finding(track) == Finding::kUnanswered) {
-      unanswered.emplace(model_->tracks()[track].to, track);
-    }
-    if (shares[track] > tuning_.near_limit && model_->finding(track) == Finding::kSilent) {
-      missing.emplace(model_->tracks()[track].to, track);
+    if (shares[track] > tuning_.near_limit && isAbsence(model_->finding(track))) {
+      (model_->finding(track) == Finding::kSilent ? missing : unanswered)
+          .emplace(model_->tracks()[track].to, track);
     }
   }
   std::vector<Candidate> candidates;

@@ -32,9 +32,7 @@ void Excused::update() {
   optional_.clear();
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
     const Track& watched = model_->tracks()[track];
-    const Finding finding = model_->finding(track);
-    const bool is_absence = finding == Finding::kSilent || finding == Finding::kUnanswered;
-    if (covers(watched) || (is_optional_[watched.to] && is_absence)) {
+    if (covers(watched) || (is_optional_[watched.to] && isAbsence(model_->finding(track)))) {
       tracks_.push_back(track);
     } else if (is_optional_[watched.to] || is_optional_[watched.from]) {
       optional_.push_back(track);

@@ -12,6 +12,9 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+// Who came less often in all of training may stay away from one recording.
+constexpr std::uint64_t kFewestGaps = 30;
+
 /// Seconds, rounded: microseconds after a start mean nothing.
 double toMilliseconds(double seconds) {
   return std::round(seconds * 1e3) / 1e3;
@@ -43,8 +46,7 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
   for (EventId id = 0; id < model.size(); ++id) {
     component_of_.push_back(model.componentIndex(id));
     Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0, 0};
-    bool always = !statistics.recordings().empty() &&
-                  static_cast<double>(statistics.type(id).gaps) >= model.tuning().fewest_gaps &&
+    bool always = !statistics.recordings().empty() && statistics.type(id).gaps >= kFewestGaps &&
                   !model.vocabulary().tellsMode(id);
     for (const Statistics::Recording& recording : statistics.recordings()) {
       const std::int64_t first = id < recording.firsts.size() ? recording.firsts[id] : -1;
@@ -78,6 +80,14 @@ void NeverHeard::add(const Event& event) {
       list->erase(same);
     }
   }
+}
+
+std::vector<bool> NeverHeard::expected() const {
+  std::vector<bool> expected(component_of_.size(), false);
+  for (const Expected& each : all_) {
+    expected[each.id] = true;
+  }
+  return expected;
 }
 
 void NeverHeard::restart() {

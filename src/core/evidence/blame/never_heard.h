@@ -26,6 +26,8 @@ class NeverHeard {
   /// Excuses event types that need not come, and nobody else.
   /// @param may_be_silent by id of the model
   void excuse(std::vector<bool> may_be_silent) { may_be_silent_ = std::move(may_be_silent); }
+  /// Whether event types come after every start, by id of the model.
+  std::vector<bool> expected() const;
   /// Forgets what was heard: the next event is the start.
   void restart();
   /// Looks at what is missing at the end of a window.

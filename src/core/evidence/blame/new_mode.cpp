@@ -10,10 +10,9 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-/// Whether evidence says that something has not come, or too seldom.
+/// Whether evidence says that something has not come, or too seldom, without being asked for.
 bool isOfSilence(Finding finding) {
-  return finding == Finding::kSilent || finding == Finding::kFewer ||
-         finding == Finding::kUnanswered;
+  return finding == Finding::kFewer || (isAbsence(finding) && finding != Finding::kUnanswered);
 }
 
 /// When the last of them was heard [ns].
@@ -39,7 +38,8 @@ std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits&
     return std::nullopt;
   }
   const Heard& heard = scorer.heard();
-  const std::set<EventId> stopped = find(silent(limits, heard, may_be_silent), shares, heard);
+  const std::set<EventId> stopped =
+      find(silent(shares, limits, heard, may_be_silent), shares, heard);
   if (stopped.empty() || accepted_.coversMode(namesOf(stopped))) {  // that is no news
     return std::nullopt;
   }
@@ -60,7 +60,7 @@ std::vector<std::string> NewMode::excuseAccepted(std::vector<double>& shares, co
     return {};
   }
   const Heard& heard = scorer.heard();
-  const std::vector<EventId> silent = this->silent(limits, heard, may_be_silent);
+  const std::vector<EventId> silent = this->silent(shares, limits, heard, may_be_silent);
   std::set<EventId> stopped = find(silent, shares, heard);
   if (!stopped.empty() && !accepted_.coversMode(namesOf(stopped))) {
     return {};
@@ -132,11 +132,15 @@ void NewMode::takeBack(const std::set<EventId>& stopped, std::vector<double>& sh
       return upstream_->isUpstream(component, model_->componentIndex(id));
     });
   };
+  const std::int64_t stop = lastOf({stopped.begin(), stopped.end()}, heard);
+  const auto began_before = [&](EventId id) {
+    return stop - heard.stamps()[id] > kRateSpan + model_->longestGap(id);
+  };
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const EventId id = model_->tracks()[track].to;
     if (shares[track] > 0 &&
-        (stopped.count(id) > 0 ||
-         (isOfSilence(model_->finding(track)) && heard.stamps()[id] <= until && hearsThem(id)))) {
+        (stopped.count(id) > 0 || (isOfSilence(model_->finding(track)) && !began_before(id) &&
+                                   heard.stamps()[id] <= until && hearsThem(id)))) {
       shares[track] = 0;
     }
   }
@@ -155,15 +159,20 @@ void NewMode::restart() {
   std::fill(excused_until_.begin(), excused_until_.end(), 0);
 }
 
-std::vector<EventId> NewMode::silent(const Limits& limits, const Heard& heard,
+std::vector<EventId> NewMode::silent(const std::vector<double>& shares, const Limits& limits,
+                                     const Heard& heard,
                                      const std::vector<bool>& may_be_silent) const {
   const double rare = std::log(model_->tuning().rare_silence);
+  std::vector<bool> owes = may_be_silent;
+  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
+    const bool owed = model_->finding(track) == Finding::kUnanswered && shares[track] > 1;
+    owes[model_->tracks()[track].to] = owes[model_->tracks()[track].to] || owed;
+  }
   std::vector<EventId> silent;
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
     const EventId id = model_->tracks()[track].to;
     if (model_->finding(track) == Finding::kSilent && !std::isnan(limits.tracks[track]) &&
-        !may_be_silent[id] && heard.hasSeen(id) &&
-        model_->logSurvival(id, heard.silence(id)) < rare) {
+        !owes[id] && heard.hasSeen(id) && model_->logSurvival(id, heard.silence(id)) < rare) {
       silent.push_back(id);
     }
   }
@@ -181,7 +190,7 @@ std::set<EventId> NewMode::stopped(const std::vector<EventId>& silent,
     const EventId id = model_->tracks()[track].to;
     const Finding finding = model_->finding(track);
     if (shares[track] <= 1 || !heard.hasSeen(id) || stopped.count(id) > 0 ||
-        (finding != Finding::kSilent && finding != Finding::kUnanswered)) {
+        (finding != Finding::kSilent && finding != Finding::kAbsent)) {
       continue;
     }
     const std::vector<EventId> together = stoppedWith(id, silent, heard);

@@ -48,15 +48,15 @@ class NewMode {
   /// early to miss all of them. Who died alone is not off: the others were heard since.
   std::set<EventId> offIn(const Acceptance& mode, const std::vector<EventId>& silent,
                           const Heard& heard) const;
-  /// Takes back the evidence against them, and against who hears them and was not heard later than
-  /// `until` [ns]: who goes on does not wait for them.
+  /// Takes back the evidence against them, and against who hears them, did not fall silent before
+  /// them, and was not heard later than `until` [ns]: who goes on does not wait for them.
   void takeBack(const std::set<EventId>& stopped, std::vector<double>& shares, const Heard& heard,
                 std::int64_t until) const;
   /// The names of their components, in order.
   std::vector<std::string> namesOf(const std::set<EventId>& ids) const;
-  /// Event types that should have come by now.
-  std::vector<EventId> silent(const Limits& limits, const Heard& heard,
-                              const std::vector<bool>& may_be_silent) const;
+  /// Event types that should have come by now. Who owes an answer is none: that is its fault.
+  std::vector<EventId> silent(const std::vector<double>& shares, const Limits& limits,
+                              const Heard& heard, const std::vector<bool>& may_be_silent) const;
   /// Those of them that stopped as in a new mode, while one was beyond its limit.
   std::set<EventId> stopped(const std::vector<EventId>& silent, const std::vector<double>& shares,
                             const Heard& heard);

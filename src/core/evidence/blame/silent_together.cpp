@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <limits>
 #include <utility>
 
 namespace self_awareness::core::evidence {
@@ -22,35 +20,68 @@ std::optional<Silent> SilentTogether::find(
     const std::vector<double>& shares, const Limits& limits, const Scorer& scorer,
     const std::map<std::string, std::int64_t>& strangers) const {
   const std::vector<Component> components = look(shares, limits, scorer);
-  std::size_t judged = 0;
-  std::size_t silent = 0;
-  for (const Component& component : components) {
-    judged += component.judged ? 1 : 0;
-    silent += component.silent ? 1 : 0;
-  }
-  if (silent < kFewest) {
-    return std::nullopt;
-  }
-  Silent found;
-  const bool all = silent == judged;
-  if (!all) {
-    found.hosts = silentHosts(components, strangers);
-  }
-  std::int64_t shortest = std::numeric_limits<std::int64_t>::max();
+  Group all;
+  std::map<std::string, Group> hosts;
   for (std::size_t k = 0; k < components.size(); ++k) {
-    const std::string& name = model_->components()[k];
-    if (components[k].silent && (all || std::binary_search(found.hosts.begin(), found.hosts.end(),
-                                                           graph_->hostOf(name)))) {
-      found.components.push_back(name);
-      shortest = std::min(shortest, components[k].silence);
+    all.add(k, components[k]);
+    hosts[graph_->hostOf(model_->components()[k])].add(k, components[k]);
+  }
+  for (const auto& [source, silence] : strangers) {
+    Group& host = hosts[graph_->hostOf(source)];
+    host.silence = std::min(host.silence, silence);
+  }
+  hosts.erase("");  // those of whom it is not known
+  Silent found;
+  std::int64_t shortest = all.silence;
+  std::vector<std::size_t> silent = together(all, components);
+  if (silent.empty() && hosts.size() > 1) {
+    shortest = std::numeric_limits<std::int64_t>::max();
+    for (const auto& [name, host] : hosts) {
+      const std::vector<std::size_t> on_it = together(host, components);
+      if (!on_it.empty()) {
+        found.hosts.push_back(name);
+        silent.insert(silent.end(), on_it.begin(), on_it.end());
+        shortest = std::min(shortest, host.silence);
+      }
     }
   }
-  if (found.components.empty()) {
+  if (silent.empty()) {
     return std::nullopt;
+  }
+  for (const std::size_t k : silent) {
+    found.components.push_back(model_->components()[k]);
   }
   std::sort(found.components.begin(), found.components.end());
   found.since = scorer.heard().windowEnd() - shortest;
   return found;
+}
+
+void SilentTogether::Group::add(std::size_t index, const Component& component) {
+  if (component.seen) {
+    silence = std::min(silence, component.silence);
+  }
+  if (component.judged) {
+    judged.push_back(index);
+  }
+}
+
+std::vector<std::size_t> SilentTogether::together(const Group& group,
+                                                  const std::vector<Component>& components) const {
+  std::vector<std::size_t> silent;
+  std::size_t near = 0;
+  for (const std::size_t k : group.judged) {
+    const Component& component = components[k];
+    // Who fell silent long before the others did not do so with them, and stays what it was.
+    if (component.silent && component.silence - group.silence > component.longest) {
+      continue;
+    }
+    if (!component.silent) {
+      return {};
+    }
+    silent.push_back(k);
+    near += component.near ? 1 : 0;
+  }
+  return near >= kFewest ? silent : std::vector<std::size_t>();
 }
 
 std::vector<SilentTogether::Component> SilentTogether::look(const std::vector<double>& shares,
@@ -81,44 +112,6 @@ std::vector<SilentTogether::Component> SilentTogether::look(const std::vector<do
     component.near = component.near || shares[track] > model_->tuning().near_limit;
   }
   return components;
-}
-
-std::vector<std::string> SilentTogether::silentHosts(
-    const std::vector<Component>& components,
-    const std::map<std::string, std::int64_t>& strangers) const {
-  struct Host {
-    std::int64_t silence = std::numeric_limits<std::int64_t>::max();  // of all on it [ns]
-    std::size_t near = 0;                                             // components
-    bool silent = true;
-  };
-  std::map<std::string, Host> hosts;
-  for (const auto& [source, silence] : strangers) {
-    Host& host = hosts[graph_->hostOf(source)];
-    host.silence = std::min(host.silence, silence);
-  }
-  for (std::size_t k = 0; k < components.size(); ++k) {
-    if (components[k].seen) {
-      Host& host = hosts[graph_->hostOf(model_->components()[k])];
-      host.silence = std::min(host.silence, components[k].silence);
-    }
-  }
-  for (std::size_t k = 0; k < components.size(); ++k) {
-    if (components[k].judged) {
-      Host& host = hosts[graph_->hostOf(model_->components()[k])];
-      host.near += components[k].near ? 1 : 0;
-      // Who fell silent long before the others did not do so with them.
-      host.silent = host.silent && components[k].silent &&
-                    components[k].silence - host.silence <= components[k].longest;
-    }
-  }
-  hosts.erase("");  // those of whom it is not known
-  std::vector<std::string> silent;
-  for (const auto& [name, host] : hosts) {
-    if (host.silent && host.near >= kFewest) {
-      silent.push_back(name);
-    }
-  }
-  return hosts.size() > 1 ? silent : std::vector<std::string>();
 }
 
 }  // namespace self_awareness::core::evidence

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -38,11 +40,20 @@ class SilentTogether {
     bool near = false;         // nearly for longer than it is allowed to
     std::int64_t longest = 0;  // gap that is usual of what it says most often [ns], once judged
   };
+  /// Components with something in common: all, or those on one computer.
+  struct Group {
+    std::int64_t silence = std::numeric_limits<std::int64_t>::max();  // of all of them [ns]
+    std::vector<std::size_t> judged;                                  // their indices
+
+    void add(std::size_t index, const Component& component);
+  };
 
   std::vector<Component> look(const std::vector<double>& shares, const Limits& limits,
                               const Scorer& scorer) const;
-  std::vector<std::string> silentHosts(const std::vector<Component>& components,
-                                       const std::map<std::string, std::int64_t>& strangers) const;
+  /// Those of a group that fell silent together; empty: somebody is heard, or too few are near
+  /// their limits. Who fell silent before is none of them, and does not speak against it.
+  std::vector<std::size_t> together(const Group& group,
+                                    const std::vector<Component>& components) const;
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const SourceGraph> graph_;

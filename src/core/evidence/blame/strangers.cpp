@@ -13,7 +13,6 @@ const std::string kLog = "/rosout";
 // As the default encoding tells lines apart: DEBUG, INFO, WARN.
 const std::set<std::string> kBelowError{"[level=1]", "[level=2]", "[level=4]"};
 
-// Every new node may send here: that it does explains nothing.
 const std::set<std::string> kForEverybody{"/rosout", "/diagnostics", "/tf", "/tf_static"};
 
 /// An event type that training never saw, as a suspect of a window.
@@ -28,6 +27,10 @@ Suspect unknownSuspect(EventId id, const Window& window) {
 }
 
 }  // namespace
+
+bool isForEverybody(const std::string& topic) {
+  return kForEverybody.count(topic) > 0;
+}
 
 void addUnknown(const Window& window, std::vector<Suspect>& suspects) {
   for (const ObservedEvent& observed : window.events) {
@@ -47,9 +50,20 @@ Strangers::Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard
     const std::string& topic = model.vocabulary().at(id).scope;
     sources_.insert(model.vocabulary().at(id).source);
     of_model_.emplace(model.vocabulary().at(id).source, topic);
-    if (kForEverybody.count(topic) == 0) {
+    if (!isForEverybody(topic)) {
       known_[topic].push_back(id);
     }
+  }
+  // Who published nothing that was heard may log anew, too. At run time, the graph grows.
+  for (const SourceGraph::Edge& edge : graph_->edges()) {
+    sources_.insert(edge.publisher);
+    sources_.insert(edge.subscriber);
+  }
+  for (const auto& [source, topic] : graph_->unheard()) {
+    sources_.insert(source);
+  }
+  for (const auto& [subscription, recordings] : graph_->lasting()) {
+    sources_.insert(subscription.first);
   }
 }
 
@@ -101,11 +115,12 @@ std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const 
   return silences;
 }
 
-std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& scorer) const {
+std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& scorer,
+                                         const Moved& moved) const {
   std::vector<Suspect> suspects;
   for (const auto& [id, last] : last_) {
     const std::int64_t age = scorer.heard().windowEnd() - last;
-    if (age > kRateSpan || !isStranger(id, scorer)) {
+    if (age > kRateSpan || !isStranger(id) || moved.isPlaceOf(id)) {
       continue;
     }
     Suspect suspect = unknownSuspect(id, window);
@@ -117,28 +132,15 @@ std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& sco
   return suspects;
 }
 
-std::vector<Suspect> Strangers::unknown(const Window& window, const Scorer& scorer) const {
-  std::vector<Suspect> named = suspects(window, scorer);
-  addUnknown(window, named);
-  return named;
-}
-
-// A node that comes under another name with every start takes the place of the one that training
-// knows: that one is not heard.
-bool Strangers::isStranger(EventId id, const Scorer& scorer) const {
+bool Strangers::isStranger(EventId id) const {
   if (!heard_ || id >= heard_->size()) {
     return false;
   }
   const EventType& type = heard_->at(id);
   const auto known = known_.find(type.scope);
-  if (known == known_.end()) {
-    return false;
-  }
-  const Vocabulary& vocabulary = *heard_;
-  return std::none_of(known->second.begin(), known->second.end(),
-                      [&](EventId other) { return vocabulary.at(other).source == type.source; }) &&
-         std::any_of(known->second.begin(), known->second.end(),
-                     [&](EventId other) { return scorer.heard().hasSeen(other); });
+  return known != known_.end() &&
+         std::none_of(known->second.begin(), known->second.end(),
+                      [&](EventId other) { return heard_->at(other).source == type.source; });
 }
 
 }  // namespace self_awareness::core::evidence

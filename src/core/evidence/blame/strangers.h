@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/evidence/blame/excused.h"
+#include "core/evidence/blame/moved.h"
 #include "core/evidence/channel/scorer.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/stream/windows.h"
@@ -15,6 +16,9 @@
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
+
+/// Whether every new node may send on a topic: that it does explains nothing.
+bool isForEverybody(const std::string& topic);
 
 /// Adds the unknown event types of a window that are not among its suspects yet, as long as these
 /// are fewer than kMostSuspects.
@@ -41,20 +45,19 @@ class Strangers {
   /// Time since somebody was heard who sends event types that the model does not know, by source
   /// [ns], at a time [ns]; empty where these types are not known.
   std::map<std::string, std::int64_t> silences(std::int64_t now) const;
-  /// Those that were heard in the last kRateSpan.
+  /// Those that were heard in the last kRateSpan, without those that have the place of others.
   /// @param scorer of the same recording, at the end of the window
-  std::vector<Suspect> suspects(const Window& window, const Scorer& scorer) const;
-  /// The same, and other unknown event types of the window (addUnknown()).
-  std::vector<Suspect> unknown(const Window& window, const Scorer& scorer) const;
+  std::vector<Suspect> suspects(const Window& window, const Scorer& scorer,
+                                const Moved& moved) const;
 
  private:
-  bool isStranger(EventId id, const Scorer& scorer) const;
+  bool isStranger(EventId id) const;
   bool isKnownByName(EventId id) const;
   bool isUsualLine(EventId id) const;
 
   std::map<std::string, std::vector<EventId>> known_;  // event types of the model, by topic
   std::size_t size_;                                   // of the model
-  std::set<std::string> sources_;                      // of the model
+  std::set<std::string> sources_;                      // of the training
   std::set<SourceGraph::Publication> of_model_;
   std::shared_ptr<const Vocabulary> heard_;
   std::shared_ptr<const SourceGraph> graph_;

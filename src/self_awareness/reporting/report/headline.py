@@ -27,6 +27,8 @@ def headline(main: Interval, together: Sequence[str], times: int) -> str:
         times: number of its alarms.
     """
     text = _what(main, together, times)
+    if main.before_end is not None:
+        text = f'{text[:-1]}, {main.before_end:.1f} s before the recording ended.'
     return text[0].upper() + text[1:]
 
 
@@ -34,10 +36,10 @@ def _what(main: Interval, together: Sequence[str], times: int) -> str:
     span = _span(main)
     if main.silence is not None:
         return _of_all(main, times)
-    if main.busy is not None:
-        return f'{main.busy}, {_often(times, span)}.'
+    if main.of.kind == 'busy machine':
+        return f'{main.busy or "the machine was busy"}, {_often(times, span)}.'
     first = main.first
-    if main.of.kind == 'new mode':
+    if main.of.kind in ('new mode', 'two senders'):
         return f'{main.of.reason}, {_often(times, span)}.'
     if first is None:
         return f'something is abnormal, {_often(times, span)}; no suspect stands out.'
@@ -45,6 +47,8 @@ def _what(main: Interval, together: Sequence[str], times: int) -> str:
     short = _plural(first.short) if together else first.short
     if first.of.reason.kind == 'never came':
         return f'{subject} {short} since the start.'
+    if first.of.reason.kind == 'stranger' and first.of.reason.topics:
+        return f'{main.of.reason}, {_often(times, span)}.'
     if first.of.reason.kind == 'stranger':
         it, was = ('them', 'they were') if together else ('it', 'it was')
         return f'{subject} {short}: training never heard {it}, {was} heard {_often(times, span)}.'

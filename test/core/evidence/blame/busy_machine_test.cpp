@@ -38,6 +38,12 @@ class BusyMachineTest : public testing::Test {
     }
     scorer_.closeWindow(60 * kSecond);
   }
+  /// Contents that changed for a minute change always.
+  static Tuning withFrozen() {
+    Tuning tuning;
+    tuning.changing_time = 60;
+    return tuning;
+  }
   static std::vector<EventType> types() {
     std::vector<EventType> types;
     for (EventId id = 0; id < kComponents; ++id) {
@@ -49,18 +55,34 @@ class BusyMachineTest : public testing::Test {
   // The components from `first` on have these shares of their limits.
   std::optional<Busy> at(double share, EventId first, EventId number, bool abnormal = true,
                          const std::string& channel = kFewer) {
+    scorer_.closeWindow(now_ += kWindow);
     std::vector<double> shares(model_->tracks().size(), 0);
     for (EventId id = first; id < first + number; ++id) {
       shares.at(indexOf(model_->tracks(), channel, id, id)) = share;
     }
-    return machine_.closeWindow(shares, scorer_, abnormal);
+    return machine_.closeWindow(shares, scorer_, events_, abnormal);
   }
 
-  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
-      watch(countsOf({robot(0, 100)}, types()), countsOf({robot(kStart, 200)}, types())));
+  std::shared_ptr<const Model> model_ =
+      std::make_shared<Model>(watch(countsOf({robot(0, 100), robot(2 * kStart, 150)}, types()),
+                                    countsOf({robot(kStart, 200)}, types()), {}, withFrozen()));
   Scorer scorer_{model_, kWindow};
+  RecentEvents events_{model_->size()};
   BusyMachine machine_{model_};
+  std::int64_t now_ = 60 * kSecond;
 };
+
+TEST_F(BusyMachineTest, WhoWasLateLongBeforeTheOthersIsSoForAnotherReason) {
+  for (int window = 0; window < 300; ++window) {
+    EXPECT_FALSE(at(1.2, 1, 1));
+  }
+  const std::int64_t alone_until = now_;
+  const std::optional<Busy> busy = at(1.2, 1, 5);
+  ASSERT_TRUE(busy);
+  EXPECT_GT(busy->since, alone_until - 20 * kSecond);
+  EXPECT_LT(busy->since, alone_until) << "a load that grows makes one after the other late";
+  EXPECT_EQ(at(1.2, 1, 5)->since, busy->since);
+}
 
 TEST_F(BusyMachineTest, ManyThatAreLateAtOnceHaveABusyMachine) {
   EXPECT_FALSE(at(1.2, 1, 3));
@@ -88,12 +110,10 @@ TEST_F(BusyMachineTest, ItIsNotWhileAllAreWithinTheirLimits) {
 }
 
 TEST_F(BusyMachineTest, ItIsStarvedWhileProcessesWait) {
-  std::int64_t now = 60 * kSecond;
   const auto wait = [&](int windows, double share) {
     std::optional<Busy> busy;
-    for (int k = 0; k < windows; ++k, now += kWindow) {
-      scorer_.hear({now, now + kWindow, static_cast<std::int64_t>(share * kWindow)});
-      scorer_.closeWindow(now + kWindow);
+    for (int k = 0; k < windows; ++k) {
+      scorer_.hear({now_, now_ + kWindow, static_cast<std::int64_t>(share * kWindow)});
       busy = at(0, 1, 0, false);
     }
     return busy;
@@ -122,15 +142,21 @@ TEST_F(BusyMachineTest, WhoSaysSomethingElseIsNotLate) {
   }
 }
 
+TEST_F(BusyMachineTest, WhoSendsTooOftenIsNotLate) {
+  EXPECT_FALSE(at(1.2, 1, kComponents - 1, true, kMore));
+  EXPECT_TRUE(at(1.2, 1, 5));
+  EXPECT_FALSE(at(1.2, 1, kComponents - 1, true, kMore)) << "nor does it stay busy for that";
+}
+
 TEST_F(BusyMachineTest, WhoFollowsAnotherAsUsualIsNoFurtherOne) {
   ASSERT_TRUE(isWatched(model_->tracks(), kPairs, kComponents - 1, 0));
   std::vector<double> shares(model_->tracks().size(), 0);
   for (const EventId id : {0U, 1U, 2U, kComponents - 1}) {
     shares.at(indexOf(model_->tracks(), kFewer, id, id)) = 1.2;
   }
-  EXPECT_FALSE(machine_.closeWindow(shares, scorer_, true));
+  EXPECT_FALSE(machine_.closeWindow(shares, scorer_, events_, true));
   shares.at(indexOf(model_->tracks(), kFewer, 3, 3)) = 1.2;
-  ASSERT_TRUE(machine_.closeWindow(shares, scorer_, true));
+  ASSERT_TRUE(machine_.closeWindow(shares, scorer_, events_, true));
 }
 
 }  // namespace

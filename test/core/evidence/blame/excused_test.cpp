@@ -48,8 +48,15 @@ class ExcusedTest : public testing::Test {
     return names;
   }
 
-  std::shared_ptr<const Model> model_ = std::make_shared<const Model>(
-      watch(countsOf({robot(1), later(robot(2))}), countsOf({later(robot(3), 2 * kStart)})));
+  static Tuning tuning() {
+    Tuning tuning;
+    tuning.changing_time = 0;
+    return tuning;
+  }
+
+  std::shared_ptr<const Model> model_ =
+      std::make_shared<const Model>(watch(countsOf({robot(1), later(robot(2))}),
+                                          countsOf({later(robot(3), 2 * kStart)}), {}, tuning()));
   Scorer scorer_{model_, kWindow};
   Excused excused_{model_, nullptr};
 };

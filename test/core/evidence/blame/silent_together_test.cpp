@@ -87,7 +87,23 @@ TEST_F(SilentTogetherTest, ItIsNotFoundWhereOneOfItsNodesIsHeard) {
 
 TEST_F(SilentTogetherTest, WhoFellSilentLongBeforeTheOthersDidNotDoSoWithThem) {
   const std::int64_t ago = 30 * kSecond;
-  EXPECT_FALSE(find({2 * ago, ago, ago, 0, 0}));
+  const std::optional<Silent> on_host = find({2 * ago, ago, ago, 0, 0});
+  ASSERT_TRUE(on_host);
+  EXPECT_EQ(on_host->components, (Strings{"/battery", "/imu"}));
+  const std::optional<Silent> all = find({2 * ago, ago, ago, ago, ago});
+  ASSERT_TRUE(all);
+  EXPECT_TRUE(all->hosts.empty());
+  EXPECT_EQ(all->components, (Strings{"/battery", "/camera", "/faces", "/imu"}));
+}
+
+TEST_F(SilentTogetherTest, AMomentWithoutTheOthersTakesNobodysDeathAway) {
+  EXPECT_FALSE(find({30 * kSecond, 5 * kSecond, 5 * kSecond, 5 * kSecond, 5 * kSecond}, 0.5))
+      << "a silence that is rare, and far from any limit";
+  for (const EventType& type : kRobot) {
+    graph_->place(type.source, "");
+  }
+  EXPECT_FALSE(find({30 * kSecond, 30 * kSecond, 30 * kSecond, 30 * kSecond, 2 * kSecond}))
+      << "one alone";
 }
 
 TEST_F(SilentTogetherTest, WhoIsFarFromItsLimitProvesNothing) {

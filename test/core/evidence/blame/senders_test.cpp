@@ -1,0 +1,297 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "../recordings.h"
+#include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/verdict/alarm.h"
+#include "self_awareness/core/verdict/detector.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::int64_t kPeriod = 200 * kMillisecond;
+
+/// A robot of three; /a also sends what everybody may.
+const std::vector<EventType> kRobot{{"/a", "/x", "T"},
+                                    {"/b", "/y", "T"},
+                                    {"/c", "/z", "T"},
+                                    {"/a", "/diagnostics", "D"},
+                                    {"/d", "/tf", "F"}};
+constexpr EventId kOfAll = 3;
+constexpr EventId kFrames = 4;
+
+Events robot(std::int64_t start, std::int64_t length, unsigned seed) {
+  Events events;
+  for (EventId id = 0; id < kRobot.size(); ++id) {
+    events = together({events, irregular(id, start, start + length, kPeriod, seed + id)});
+  }
+  return events;
+}
+
+class SendersTest : public testing::Test {
+ protected:
+  SendersTest() {
+    limits_.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
+    for (EventId id = 0; id < kRobot.size(); ++id) {
+      limit(kOverdue, id) = model_->overdue(id, 3 * kSecond);
+    }
+  }
+  double& limit(const std::string& channel, EventId id) {
+    return limits_.tracks[indexOf(model_->tracks(), channel, id, id)];
+  }
+  void start() {
+    std::unique_ptr<core::Judge> judge =
+        makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+    judge->accept(accepted_);
+    detector_ = std::make_unique<Detector>(
+        std::move(judge), kWindow, Detector::Parameters{}, [this](const Verdict& verdict) {
+          if (const auto ended = alarms_.add(verdict, kWindow, *heard_)) {
+            told_.push_back(*ended);
+          }
+          is_busy_ = is_busy_ || verdict.busy;
+        });
+  }
+  /// Lets the robot run, with other event types in place of its own.
+  void run(std::int64_t from, std::int64_t until, const std::vector<std::optional<EventId>>& ids) {
+    for (const Event& event : robot(from, until - from, 300)) {
+      if (ids[event.id]) {
+        detector_->add({event.stamp, *ids[event.id], event.attributes});
+      }
+    }
+    detector_->advance(until);
+  }
+  EventId intern(const std::string& source, EventId of) {
+    return heard_->intern({source, kRobot[of].scope, kRobot[of].type});
+  }
+  /// All that was told, with what stands.
+  std::vector<Alarm> told() const {
+    std::vector<Alarm> all = told_;
+    if (alarms_.standing()) {
+      all.push_back(*alarms_.standing());
+    }
+    return all;
+  }
+  static std::vector<std::string> wordsOf(const Alarm& alarm) {
+    std::vector<std::string> words;
+    for (const std::vector<Suspect>& suspects : {alarm.suspects, alarm.later}) {
+      for (const Suspect& suspect : suspects) {
+        words.push_back(suspect.reason.words);
+      }
+    }
+    return words;
+  }
+  static bool begins(const std::string& words, const std::string& with) {
+    return words.compare(0, with.size(), with) == 0;
+  }
+
+  const std::vector<std::optional<EventId>> usual_{0, 1, 2, 3, 4};
+  std::shared_ptr<const Model> model_ =
+      std::make_shared<Model>(watch(countsOf({robot(0, 60 * kSecond, 100)}, kRobot),
+                                    countsOf({robot(kStart, 60 * kSecond, 200)}, kRobot)));
+  std::shared_ptr<Vocabulary> heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
+  Limits limits_;
+  Acceptances accepted_;
+  std::unique_ptr<Detector> detector_;
+  Alarms alarms_;
+  std::vector<Alarm> told_;
+  bool is_busy_ = false;
+};
+
+TEST_F(SendersTest, ATopicThatComesFromAnotherNodeIsOneSuspicion) {
+  start();
+  run(0, 150 * kSecond, {0, intern("/manager", kB), 2, 3, 4});
+  ASSERT_EQ(told().size(), 1U);
+  const Alarm alarm = told().front();
+  EXPECT_EQ(alarm.level, Alarm::Level::kSuspicion);
+  EXPECT_FALSE(alarm.over);
+  EXPECT_EQ(alarm.kind, Kind::kStranger);
+  EXPECT_EQ(alarm.culprit, "/manager");
+  ASSERT_EQ(wordsOf(alarm).size(), 1U);
+  EXPECT_EQ(alarm.reason,
+            "/y comes from /manager now, in training from /b; not watched until you train again "
+            "with --rename /manager /b; to accept it: ~accept \"{component: /manager, kind: "
+            "stranger}\"");
+}
+
+TEST_F(SendersTest, WhatIsAcceptedMayComeFromAnotherNode) {
+  Acceptance stranger;
+  stranger.component = "/manager";
+  stranger.kind = Kind::kStranger;
+  accepted_.add(stranger);
+  start();
+  run(0, 150 * kSecond, {0, intern("/manager", kB), 2, 3, 4});
+  EXPECT_TRUE(told().empty());
+}
+
+TEST_F(SendersTest, ANodeThatWasRenamedIsOneAndSoAreSomeOfItsTopics) {
+  start();
+  run(0, 100 * kSecond, {intern("/new", kA), 1, 2, intern("/new", kOfAll), intern("/e", kFrames)});
+  ASSERT_EQ(told().size(), 1U);
+  const std::vector<std::string> words = wordsOf(told().front());
+  ASSERT_GE(words.size(), 2U);
+  EXPECT_TRUE(begins(words[0], "/tf comes from /e now, in training from /d")) << words[0];
+  EXPECT_TRUE(begins(words[1], "/diagnostics and /x come from /new now, in training from /a"))
+      << words[1];
+}
+
+TEST_F(SendersTest, AManagerThatWasThereMayTakeOverTopicsOfSeveral) {
+  start();
+  run(0, 100 * kSecond, {intern("/c", kA), intern("/c", kB), 2, 3, 4});
+  ASSERT_EQ(told().size(), 1U);
+  EXPECT_TRUE(begins(told().front().reason,
+                     "/x and /y come from /c now, in training from /a and /b; not watched until "
+                     "you train again; to accept it"))
+      << told().front().reason;
+}
+
+TEST_F(SendersTest, WhatItsNewSenderDiesOfIsNotCalledQuiet) {
+  start();
+  const EventId manager = intern("/manager", kB);
+  run(0, 30 * kSecond, {0, manager, 2, 3, 4});
+  run(30 * kSecond, 150 * kSecond, {0, std::nullopt, 2, 3, 4});
+  ASSERT_EQ(told().size(), 1U);
+  EXPECT_FALSE(told().front().over) << "nobody watches it";
+}
+
+TEST_F(SendersTest, OneWhoComesAfterAllHasNotMoved) {
+  start();
+  const EventId manager = intern("/manager", kB);
+  run(0, 10 * kSecond, {0, manager, 2, 3, 4});
+  run(10 * kSecond, 60 * kSecond, usual_);
+  ASSERT_EQ(told().size(), 1U);
+  EXPECT_TRUE(told().front().over);
+}
+
+TEST_F(SendersTest, AStrangerAtAnotherRateDoesNotHideWhoNeverCame) {
+  start();
+  const EventId slow = intern("/joystick", kB);
+  const Events all = robot(0, 100 * kSecond, 300);
+  std::int64_t next = 0;
+  for (const Event& event : all) {
+    if (event.id != kB) {
+      detector_->add(event);
+    } else if (event.stamp >= next) {
+      detector_->add({event.stamp, slow});
+      next = event.stamp + 5 * kPeriod;
+    }
+  }
+  ASSERT_EQ(told().size(), 2U);
+  const std::vector<std::string> words = wordsOf(told()[0]);
+  EXPECT_TRUE(std::any_of(words.begin(), words.end(), [](const std::string& each) {
+    return begins(each, "never seen in training");
+  }));
+  EXPECT_TRUE(std::any_of(words.begin(), words.end(), [](const std::string& each) {
+    return begins(each, "not heard since the start");
+  })) << "in the suspicion that stands";
+  EXPECT_EQ(told()[1].level, Alarm::Level::kAlarm);
+  EXPECT_EQ(told()[1].culprit, "/b");
+  EXPECT_EQ(told()[1].kind, Kind::kNeverCame);
+}
+
+TEST_F(SendersTest, TwoSendersOfOneNameAreAnAlarmOfNoComponent) {
+  for (EventId id = 0; id < kRobot.size(); ++id) {
+    limit(kMore, id) = 3;
+  }
+  start();
+  run(0, 30 * kSecond, usual_);
+  Senders all;
+  for (const EventType& type : kRobot) {
+    all.doubled.insert({type.source, type.scope});
+  }
+  detector_->setSenders({{*all.doubled.begin()}, {}});
+  const auto twice = [&](std::int64_t from, std::int64_t until, const auto& who) {
+    Events more = robot(from, until - from, 500);
+    more.erase(std::remove_if(more.begin(), more.end(),
+                              [&](const Event& event) { return !who(event.id); }),
+               more.end());
+    for (const Event& event : together({robot(from, until - from, 300), more})) {
+      detector_->add(event);
+    }
+  };
+  twice(30 * kSecond, 31 * kSecond, [](EventId id) { return id == kOfAll; });
+  EXPECT_EQ(told().back().reason, "/diagnostics of /a comes from two senders of one name");
+  detector_->setSenders(all);
+  twice(31 * kSecond, 60 * kSecond, [](EventId /*id*/) { return true; });
+  ASSERT_EQ(told().size(), 2U);
+  EXPECT_EQ(told()[0].level, Alarm::Level::kSuspicion);
+  const Alarm alarm = told()[1];
+  EXPECT_EQ(alarm.level, Alarm::Level::kAlarm);
+  EXPECT_EQ(alarm.kind, Kind::kTwoSenders);
+  EXPECT_EQ(alarm.culprit, "");
+  EXPECT_EQ(alarm.reason, "every topic of 4 nodes comes from two senders of one name");
+  EXPECT_EQ(alarm.evidence, "two senders");
+  EXPECT_FALSE(is_busy_);
+  detector_->setSenders({});
+  run(60 * kSecond, 100 * kSecond, usual_);
+  EXPECT_EQ(told().size(), 2U) << "what it left behind is no news";
+  EXPECT_TRUE(told().back().over);
+}
+
+TEST_F(SendersTest, ARestartThatOverlapsIsASuspicion) {
+  start();
+  run(0, 30 * kSecond, usual_);
+  detector_->setSenders({{{"/a", "/x"}}, {}});
+  run(30 * kSecond, 32 * kSecond, usual_);
+  detector_->setSenders({});
+  run(32 * kSecond, 60 * kSecond, usual_);
+  ASSERT_EQ(told().size(), 1U);
+  EXPECT_EQ(told()[0].level, Alarm::Level::kSuspicion);
+  EXPECT_EQ(told()[0].reason, "/x of /a comes from two senders of one name");
+}
+
+TEST_F(SendersTest, WhatCountedTwiceInTrainingIsNormal) {
+  const auto relay = [](std::int64_t from, unsigned seed) {
+    Events events = robot(from, 60 * kSecond, seed);
+    for (Event& event : events) {
+      event.attributes = {
+          0, sizeClass(100),
+          event.stamp % 2 == 0 ? Attributes::Step::kRestart : Attributes::Step::kLostMany, false};
+    }
+    return events;
+  };
+  model_ = std::make_shared<Model>(
+      watch(countsOf({relay(0, 100)}, kRobot), countsOf({relay(kStart, 200)}, kRobot)));
+  limits_.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
+  start();
+  detector_->setSenders({{{"/a", "/x"}}, {}});
+  run(0, 60 * kSecond, usual_);
+  EXPECT_TRUE(told().empty());
+}
+
+TEST_F(SendersTest, WhoPlaysOnTopicsOfTheRobotIsTheFirstSuspect) {
+  limit(kMore, kC) = 3;
+  start();
+  run(0, 30 * kSecond, usual_);
+  const EventType scan{"/play_17", "/x", "T"};
+  const EventType other{"/play_17", "/y", "T"};
+  const EventType unknown{"/play_17", "/new", "T"};
+  for (const EventType& type : {scan, other, unknown}) {
+    heard_->intern(type);
+  }
+  detector_->setSenders({{}, {scan, other, unknown}});
+  run(30 * kSecond, 40 * kSecond, usual_);
+  ASSERT_EQ(told().size(), 1U);
+  EXPECT_EQ(told()[0].level, Alarm::Level::kSuspicion);
+  EXPECT_EQ(told()[0].culprit, "/play_17");
+  EXPECT_EQ(told()[0].reason, "/play_17 plays on 2 topics of this robot: /x and /y");
+  for (int k = 0; k < 100; ++k) {  // C answers to what is played
+    detector_->add({40 * kSecond + k * 20 * kMillisecond, kC});
+  }
+  run(42 * kSecond, 43 * kSecond, usual_);
+  ASSERT_EQ(told().size(), 2U);
+  EXPECT_EQ(told()[1].level, Alarm::Level::kAlarm);
+  EXPECT_EQ(told()[1].culprit, "/play_17");
+  detector_->setSenders({});
+  run(43 * kSecond, 60 * kSecond, usual_);
+  EXPECT_TRUE(told().back().over);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence
