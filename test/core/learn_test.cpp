@@ -266,9 +266,7 @@ TEST(Model, WhatWasLearnedJudgesAnotherRecording) {
     detector.add(event);
   }
   detector.finish();
-  ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(found[1].id, found[0].id);
-  EXPECT_EQ(found[1].kind, Kind::kAllSilent) << "who answers it falls silent, too";
+  ASSERT_EQ(found.size(), 1U) << "a pause of the other one is no silence of all";
   EXPECT_EQ(found[0].culprit, "/a");
   EXPECT_EQ(found[0].kind, Kind::kDied);
   EXPECT_GT(found[0].begin, death);

@@ -10,6 +10,7 @@
 
 #include "attributed.h"
 #include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/evidence/limits/coverage.h"
 #include "self_awareness/core/learn.h"
 #include "self_awareness/core/verdict/detector.h"
 
@@ -31,9 +32,19 @@ inline Events robot(const Source& source, unsigned seed, std::int64_t length = k
                    messages(kB, start + 7 * kMillisecond, start + length, {}, seed + 100)});
 }
 
+/// Contents that change for minutes change always, so that recordings may be short.
+inline Tuning withFrozen() {
+  Tuning tuning;
+  tuning.changing_time = 300;
+  return tuning;
+}
+
 /// A model of recordings, each of a start of its own.
-inline std::shared_ptr<const core::Model> learned(const std::vector<Events>& recordings) {
-  Learner learner;
+inline std::shared_ptr<const core::Model> learned(const std::vector<Events>& recordings,
+                                                  const Tuning& tuning = withFrozen()) {
+  Learner::Parameters parameters;
+  parameters.tuning = tuning;
+  Learner learner(parameters, {});
   learner.intern(kTypes[kA]);
   learner.intern(kTypes[kB]);
   for (const Events& events : recordings) {
@@ -55,6 +66,16 @@ inline std::shared_ptr<const core::Model> learned(const Source& source) {
 inline bool watches(const core::Model& model, const std::string& channel, EventId id = kA) {
   const std::size_t track = indexOf(model.watched.tracks, channel, id, id);
   return track < model.watched.tracks.size() && !std::isnan(model.limits()->tracks[track]);
+}
+
+/// What is not judged of the topics of a model.
+inline std::vector<Coverage::Blind> blindIn(const core::Model& model) {
+  std::vector<Coverage::Blind> all;
+  for (const Coverage& of :
+       coverageOf(Model(model.watched), *model.limits(), {}, model.window, false)) {
+    all.insert(all.end(), of.blind.begin(), of.blind.end());
+  }
+  return all;
 }
 
 /// The begin of an alarm.

@@ -144,11 +144,12 @@ TEST(EvidenceTuning, AChannelThatIsSwitchedOffIsNotWatched) {
         pausing.push_back(event);
       }
     }
-    return countsOf({later(pausing, seed * kStart)});
+    return countsOf({later(pausing, seed * kStart), later(pausing, (seed + 2) * kStart)});
   };
   const auto channels = [&](const std::set<std::string>& without) {
     Tuning tuning;
     tuning.without = without;
+    tuning.changing_time = 0;
     std::set<std::string> watched;
     for (const Track& track : watch(start(1), start(2), {}, tuning).tracks) {
       watched.insert(channelName(track));

@@ -21,7 +21,7 @@ LABELS = {'overdue': 'overdue', 'fewer': 'rate', 'more': 'rate', 'own gaps': 'pa
           'pairs': 'pairs', 'deadlines': 'deadlines', 'company': 'company'}
 """What people call the channels."""
 
-FEWEST_GAPS = 30
+FEWEST_GAPS = 8
 LEAST_GAIN = 0.3
 FEWEST_DELAYS_OF_PAIR = 200
 PREDECESSORS = 2
@@ -39,7 +39,6 @@ GAPS_TO_DELAYS = (2.0, 10.0)
 """Least effects on gaps, in those on delays."""
 LEAST_RATE_EFFECT = 0.04
 LONGEST_GAP_OF_SERIES = 2 * SECOND
-ENDING = 5 * SECOND
 SHORTEST_STALL = 50 * MS
 LONGEST_STALL_OF_TRAINING = 2 * SECOND
 BETWEEN_STALLS = 30 * SECOND
@@ -221,13 +220,11 @@ class Counts:
         stamps = [t for t, _ in events]
         of_kind = {kind: [t for t, other in ticking if other == kind] for kind in self.types}
         firsts = {kind: [t for t, other in events if other == kind][:1] for kind in self.types}
-        end = max(stamps) - sum(stalls.values())
         self.recordings.append(Seen(
             stamps[0], max(stamps), longest_gap([t for t, _ in ran]),
             max(stalls.values(), default=0),
             {kind: len(own) for kind, own in of_kind.items()},
-            {kind: max(longest_gap(own), end - ENDING - own[-1]) if len(own) > 1 else 0
-             for kind, own in of_kind.items()},
+            {kind: longest_gap(own) if len(own) > 1 else 0 for kind, own in of_kind.items()},
             {kind: max(own[0] - stamps[0], 0) if own else -1 for kind, own in firsts.items()}))
 
     def miss_rate(self, asking: str, answer: str) -> float:

@@ -2,17 +2,17 @@
 from __future__ import annotations
 
 import math
-from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
-from reference_evidence import (ENDING, FEWEST_GAPS, LABELS, SECOND, Counts, Event, ReferenceModel,
-                                Seen, Track, gain, is_mode)
+from reference_evidence import (FEWEST_GAPS, LABELS, SECOND, Counts, Event, ReferenceModel, Seen,
+                                Track, gain, is_mode)
 from reference_relations import ReferenceRelations, Relation, Span, starts_of
-from reference_scorer import ReferenceScorer
+from reference_scorer import MOST_EVIDENCE, ReferenceScorer
 
 HOUR = 3600 * SECOND
 PART = 30 * SECOND
-LEAST_MARGIN = {'deadlines': 2.0, 'company': 2.0}
+LEAST_MARGIN = {'deadlines': 2.0, 'company': 2.0, 'own gaps': 2.0}
 """By pool; 1.25 elsewhere."""
 MOST_MARGIN = 4.0
 MOST_GAP_MARGIN = 1.6
@@ -29,7 +29,6 @@ PAUSES = 10
 PRIOR_PAUSES = 2
 PAUSES_IN_RECORDING = 25
 OWED_OF_SILENCE = 0.9
-START_TIME = 60 * SECOND
 RATE_SPAN = 2 * SECOND
 QUIETEST = 0.58
 HOURS_OF_ROBOTS = 0.5
@@ -45,8 +44,6 @@ PRIOR_EXCEEDANCES = 5
 FEWEST = 0.5
 """Exceedances, where there was none."""
 LEAST_EXCESS = math.log(1.1)
-MANY_TRACKS = 20
-BEYOND = math.log(1.25)
 
 
 def single(value: float) -> float:
@@ -73,7 +70,6 @@ class HeldOut:
     def __init__(self, parts: Sequence[Part], tracks: Sequence[Tuple[Sequence[float], float]],
                  scale: float) -> None:
         self._parts = parts
-        self._many = len(tracks) >= MANY_TRACKS
         self._levels = []  # eligible hours, logarithms of the exceedances, their scale
         for groups in ([part.start for part in parts], list(range(len(parts)))):
             found = [self._exceedance(groups, largest, least) for largest, least in tracks]
@@ -105,14 +101,12 @@ class HeldOut:
         """Return by how much the worst start exceeds the others."""
         return math.exp(self._exceedance([part.start for part in self._parts], largest, least))
 
-    def margin(self, rate: float, least: float) -> float:
+    def margin(self, rate: float) -> float:
         """Return the margin that is exceeded so often an hour."""
-        margin = least
+        margin = 1.0
         for hours, logs, scale in self._levels:
             expected = max(len(logs), FEWEST) / (hours * rate)
             log = LEAST_EXCESS + scale * max(math.log(expected), 0.0)
-            if self._many:
-                log = min(log, max(logs, default=0.0) + BEYOND)
             margin = max(margin, math.exp(log))
         return margin
 
@@ -216,7 +210,30 @@ class ReferenceLimits:
     def _settled(self, recording: Judged) -> List[List[float]]:
         # The last window lasts longer than the recording.
         rows = ReferenceScorer(recording.judging, recording.events, self._window).rows[:-1]
-        return rows[self._unsettled(recording):]
+        return self._until_heard(recording, rows)[self._unsettled(recording):]
+
+    def _until_heard(self, recording: Judged, rows: List[List[float]]) -> List[List[float]]:
+        """Return evidence where its type is heard, the largest since it was heard before."""
+        heard: Dict[str, Set[int]] = {}
+        newest = recording.events[0][0]
+        for t, kind in recording.events:
+            newest = max(newest, t)
+            heard.setdefault(kind, set()).add(newest // self._window)
+        first = recording.events[0][0] // self._window
+        unsettled = self._unsettled(recording)
+        counted = [[0.0] * len(row) for row in rows]
+        for index, (_, kind, _) in enumerate(self._model.tracks):
+            windows = sorted(window - first for window in heard.get(kind, ()))
+            before = windows[0] - 1 if windows else 0
+            if windows and self._is_often_silent(kind):
+                windows = [before, *windows, len(rows) - 1]
+                before = -1
+            for now in windows:
+                if 0 <= now < len(rows):
+                    counted[now][index] = max([counted[now][index], *(
+                        rows[k][index] for k in range(before + 1, now + 1) if k >= unsettled)])
+                before = now
+        return counted
 
     def _unsettled(self, recording: Judged) -> int:
         """Return the number of windows that begin before the detector has settled."""
@@ -264,36 +281,19 @@ class ReferenceLimits:
 
     def _longest_gaps(self, kind: str) -> List[float]:
         """Return the longest gaps of the recordings of the training, and of parts of others."""
-        longest = [float(seen.longest_gaps[kind]) if seen.events[kind] else 0.0
-                   for seen in self._training()]
+        longest = [float(max(seen.longest_gaps[kind] if seen.events[kind] else 0,
+                             self._edge(kind, seen))) for seen in self._training()]
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
-                longest += self._longest_gaps_of_parts(number, kind)
+                parts = self._longest_gaps_of_parts(number, kind)
+                stamps = [t for t, _ in recording.events]
+                never = (self._is_often_silent(kind)
+                         and all(other != kind for _, other in recording.events))
+                longest += [float(stamps[-1] - stamps[0])] * len(parts) if never else parts
         return [gap + self._window if gap > 0 else 0.0 for gap in longest]
 
-    def _late_firsts(self, kind: str) -> List[float]:
-        """Return by how much the first event came too late, by the same."""
-        silent = self._is_mostly_silent(kind)
-        pause = 0 if silent else START_TIME
-        fastest = 0 if silent else self._fastest_first(kind)
-        late = [float(seen.firsts[kind] if seen.events[kind] else seen.end - seen.start) - fastest
-                for seen in self._training()]
-        for number, recording in enumerate(self._recordings):
-            if not recording.trained_on:
-                end = next((t for t, other in recording.events if other == kind),
-                           recording.events[-1][0])
-                of_parts = [0.0] * len(self._in_parts(self._rows[number]))
-                of_parts[0] = float(end - recording.events[0][0] - fastest)
-                late += of_parts
-        return [first + self._window if first > pause else 0.0 for first in late]
-
-    def _silences(self, kind: str) -> List[float]:
-        """Return both, the larger one of each."""
-        return [max(gap, late) for gap, late in zip(self._longest_gaps(kind),
-                                                    self._late_firsts(kind))]
-
     def _agreed(self, kind: str) -> List[float]:
-        """Return both, without what one of five starts or more shows alone."""
+        """Return the same, without what one of five starts or more shows alone."""
         gaps = self._longest_gaps(kind)
         starts = [part.start for part in self._parts_with_gaps()]
         agreed = []
@@ -305,7 +305,7 @@ class ReferenceLimits:
             fault = len(others) >= 4 and (
                 gap > MOST_MEAN_GAPS * max(others.values()) + LONGEST_STALL)
             agreed.append(max(others.values()) if fault else gap)
-        return [max(gap, late) for gap, late in zip(agreed, self._late_firsts(kind))]
+        return agreed
 
     def _parts_with_gaps(self) -> List[Part]:
         parts = [Part(start, (seen.end - seen.start) / HOUR)
@@ -314,25 +314,42 @@ class ReferenceLimits:
             parts += [] if recording.trained_on else self._parts_of(number, start)
         return parts
 
-    def _fastest_first(self, kind: str) -> int:
-        return min([seen.firsts[kind] for seen in self._training() if seen.events[kind]]
-                   + [t - recording.events[0][0] for recording in self._recordings
-                      for t, other in recording.events
-                      if other == kind and not recording.trained_on])
-
-    def _is_mostly_silent(self, kind: str) -> bool:
+    def _is_often_silent(self, kind: str) -> bool:
         both = self._model.both
         longest = sorted(both.gaps[kind])[-32:]
         pauses = sum(gap for gap in longest if gap > REGULAR * both.mean_gap(kind))
-        heard = sum(seen.end - seen.start for seen in self._training() if seen.events[kind])
-        return 2 * (sum(both.gaps[kind]) - pauses) < heard
+        heard = sum(seen.end - seen.start for seen in self._heard_in(kind))
+        return sum(both.gaps[kind]) - pauses < 0.75 * heard
+
+    def _heard_in(self, kind: str) -> List[Seen]:
+        return [seen for seen in self._training() if seen.events[kind]]
+
+    def _cut_off(self, kind: str) -> float:
+        """Return the length of the pauses that recordings of the training cut off."""
+        if not self._is_often_silent(kind):
+            return 0.0
+        both = self._model.both
+        lengths = sum(seen.end - seen.start - 2 * REGULAR * both.mean_gap(kind)
+                      for seen in self._heard_in(kind))
+        return max(lengths - sum(both.gaps[kind]), 0.0)
+
+    def _edge(self, kind: str, seen: Seen) -> int:
+        """Return the longest silence that a recording of the training cuts off."""
+        if not self._is_often_silent(kind):
+            return 0
+        if not seen.events[kind]:
+            return seen.end - seen.start
+        heard = self._heard_in(kind)
+        tails = self._cut_off(kind) - sum(each.firsts[kind] for each in heard)
+        return max(seen.firsts[kind], int(tails / len(heard)))
 
     def _longest_gaps_of_parts(self, number: int, kind: str) -> List[float]:
         # A gap belongs to the part of the window that was closed last.
         recording = self._recordings[number]
         longest = [0.0] * len(self._in_parts(self._rows[number]))
         newest = recording.events[0][0]
-        last: Optional[int] = None
+        silent, came = self._is_often_silent(kind), False
+        last: Optional[int] = newest if silent else None
         for t, other in recording.events:
             newest = max(newest, t)
             if other == kind:
@@ -340,9 +357,9 @@ class ReferenceLimits:
                           - self._unsettled(recording))
                 part = max(closed - 1, 0) // (PART // self._window)
                 longest[part] = max(longest[part], t - last if last is not None else 0)
-                last = t
-        if last is not None:
-            longest[-1] = max(longest[-1], recording.events[-1][0] - ENDING - last)
+                last, came = t, True
+        if silent and came and last is not None:
+            longest[-1] = max(longest[-1], recording.events[-1][0] - last)
         return longest
 
     def _largest(self, index: int) -> List[float]:
@@ -356,7 +373,7 @@ class ReferenceLimits:
         longest = sorted(gap for gap in self._agreed(kind) if gap > 0)
         second = longest[-2:][0] - self._window
         mean = self._model.both.mean_gap(kind)
-        if second >= REGULAR * mean or self._is_mostly_silent(kind):
+        if second >= REGULAR * mean or self._is_often_silent(kind):
             return 'others'
         return 'fast timers' if mean < FAST * self._window else 'timers'
 
@@ -376,15 +393,17 @@ class ReferenceLimits:
         # Silences first: what they bring by themselves is no evidence of a rate.
         for pool in sorted(pools, key=lambda pool: pool not in POOLS_OF_GAPS):
             tracks, of_gaps = pools[pool], pool in POOLS_OF_GAPS
-            shown = [self._silences(self._model.tracks[index][1]) if of_gaps
+            shown = [self._longest_gaps(self._model.tracks[index][1]) if of_gaps
                      else self._largest(index) for index in tracks]
             seen = [(self._agreed(self._model.tracks[index][1]) if pool in POOLS_OF_TIMERS
                      else largest, self._model.least_limit(self._model.tracks[index]))
                     for index, largest in zip(tracks, shown)]
             held_out = HeldOut(with_gaps if of_gaps else judged, seen, SCALE.get(pool, 0.2))
-            margin = min(held_out.margin(self._rates[pool], LEAST_MARGIN.get(pool, 1.25)),
-                         MOST_GAP_MARGIN if of_gaps else MOST_MARGIN)
+            told = held_out.margin(self._rates[pool])
             for index, all_shown, (largest, least) in zip(tracks, shown, seen):
+                least_margin = LEAST_MARGIN.get(self._model.tracks[index][0], 1.25)
+                margin = min(max(told, least_margin),
+                             MOST_GAP_MARGIN if of_gaps else MOST_MARGIN)
                 own = (margin if of_gaps else
                        max(margin, min(held_out.excess(largest, least), MOST_OWN_MARGIN)))
                 track = self._model.tracks[index]
@@ -457,10 +476,8 @@ class ReferenceLimits:
         usual = REGULAR * self._model.both.mean_gap(kind)
         longest = [gap for gap in sorted(gaps)[-PAUSES:] if gap > usual]
         shortest = float(longest[0]) if len(longest) == PAUSES else usual
-        lengths = sum(seen.end - seen.start - 2 * usual for seen in self._training())
-        cut_off = max(lengths - sum(self._model.both.gaps[kind]), 0.0)
         excess = (sum(gap - shortest for gap in longest)
-                  + max(cut_off - (shortest - usual), 0.0)) / max(len(longest), 1)
+                  + max(self._cut_off(kind) - (shortest - usual), 0.0)) / max(len(longest), 1)
         return Tail(shortest, excess if longest else 0.0, len(longest) / hours,
                     min(len(longest), starts) + PRIOR_PAUSES)
 
@@ -481,4 +498,6 @@ class ReferenceLimits:
             wait = largest * (both.mean_gap(other) if in_number and not is_mode(other)
                               else SECOND)
             return found if wait < OWED_OF_SILENCE * max(both.gaps[kind]) else math.nan
+        if channel in ('own gaps', 'pairs') and largest >= MOST_EVIDENCE:
+            return math.nan
         return found

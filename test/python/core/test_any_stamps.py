@@ -26,7 +26,7 @@ THRESHOLD = 0.4
 MODES = {'C': 'x', 'D': 'y'}
 """What tells a mode in place of an event type."""
 KINDS = [*LETTERS, *MODES.values()]
-TYPES = [EventType('', kind, f'[mode: {kind}]' if is_mode(kind) else '') for kind in KINDS]
+TYPES = [EventType('', f'/{kind}', f'[mode: {kind}]' if is_mode(kind) else '') for kind in KINDS]
 SEVERAL = st.lists(recordings(), min_size=1, max_size=3)
 MUCH = st.lists(long_recordings(), min_size=1, max_size=2)
 """Enough for something to be watched."""
@@ -59,7 +59,7 @@ def trained_on(all_events: Sequence[Sequence[Event]],
 
 def ids_of(trained: TrainedModel) -> Dict[str, int]:
     """Return the model's ids by letter."""
-    return {kind.scope: index for index, kind in enumerate(trained.event_types)}
+    return {kind.scope[1:]: index for index, kind in enumerate(trained.event_types)}
 
 
 def judged(trained: TrainedModel, events: Sequence[Event]) -> Verdicts:
@@ -236,8 +236,8 @@ def test_the_order_of_recordings_changes_nothing(
                   for each in (of_robot, shuffled))
     assert counted(one) == counted(other)
     watched, other_watched = (
-        {(track.channel, trained.event_types[track.to_id].scope,
-          trained.event_types[track.from_id].scope)
+        {(track.channel, trained.event_types[track.to_id].scope[1:],
+          trained.event_types[track.from_id].scope[1:])
          for track in EvidenceModel(trained).tracks} for trained in (one, other))
     assert watched == other_watched
 

@@ -14,7 +14,7 @@ namespace self_awareness::core::evidence {
 /// Times are in seconds.
 struct Tuning {
   // What is known well enough to be judged.
-  double fewest_gaps = 30;
+  double fewest_gaps = 8;
   double fewest_delays_of_pair = 200;
   double least_rate = 1.5;
   double predecessors = 2;
@@ -75,7 +75,6 @@ struct Tuning {
   double prior_exceedances = 5;
   double scale = 0.2;
   double scale_of_timers = 0.05;
-  double many_tracks = 20;
   double share_of_least = 0.5;
   double least_margin = 1.25;
   double least_deadline_margin = 2;
@@ -109,7 +108,7 @@ struct Tuning {
   double least_losses = 1.5;
   double least_size = 0.5;
   double least_repeat = 2;
-  double longest_repeat = 30;
+  double changing_time = 7200;
   double share_of_attribute = 0.02;
 
   /// Channels that are switched off, by their names (channelNames()).

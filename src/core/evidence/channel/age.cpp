@@ -71,7 +71,8 @@ struct AgeOfMessages {
 }  // namespace
 
 std::vector<Track> Age::watch(const Choice& choice) const {
-  return tracksOfMessages(*this, choice, [](const AttributeCounts& counts) {
+  return tracksOfMessages(*this, choice, [&](EventId id) {
+    const AttributeCounts& counts = choice.both.type(id).attributes;
     const auto counted = static_cast<double>(counts.counted());
     const std::uint64_t large =
         total({counts.rises.upper_bound(ageClass(toNanoseconds(kUsualRise))), counts.rises.end()});

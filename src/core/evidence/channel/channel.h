@@ -136,6 +136,14 @@ class Channel {
   virtual bool hasShareOfItsOwn() const { return isOfAttributes(); }
   /// What it watches, given the counts of the training and the graph.
   virtual std::vector<Track> watch(const Choice& choice) const = 0;
+  /// What it judges, in a word, where nothing else of an event type does; empty: another channel
+  /// does.
+  virtual std::string about() const { return {}; }
+  /// Why it may not judge an event type, in words.
+  virtual std::string whyNot(const Statistics& /*counts*/, EventId /*id*/,
+                             const Tuning& /*tuning*/) const {
+    return {};
+  }
   /// What it expects of its tracks.
   /// @param halves of the training that the model is learned from
   virtual std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,

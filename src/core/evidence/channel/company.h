@@ -11,7 +11,7 @@ namespace self_awareness::core::evidence {
 class Company : public Channel {
  public:
   std::string name() const override { return "company"; }
-  Finding finding() const override { return Finding::kUnanswered; }
+  Finding finding() const override { return Finding::kAbsent; }
   Kind kind() const override { return Kind::kDied; }
   bool hasShareOfItsOwn() const override { return true; }
   std::vector<Track> watch(const Choice& choice) const override;

@@ -217,6 +217,11 @@ double ExpectedDelays::leastLimit(std::size_t /*track*/) const {
   return 2 * model_.tuning().most_surprise + 1;
 }
 
+double ExpectedDelays::limit(std::size_t /*track*/, double largest, double most) const {
+  // Nobody knows how far a sum would have grown that ended at its cap.
+  return largest < DelaySum::kMost ? most : std::numeric_limits<double>::quiet_NaN();
+}
+
 const Track& ExpectedDelays::track(std::size_t number) const {
   return model_.tracks()[tracks()[number]];
 }

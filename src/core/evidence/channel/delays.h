@@ -126,6 +126,7 @@ class ExpectedDelays : public Expectation {
   ExpectedDelays(const Model& model, const Halves& halves, std::vector<std::size_t> tracks);
 
   double leastLimit(std::size_t track) const override;
+  double limit(std::size_t track, double largest, double most) const override;
   const DelaySurprise& surprise(std::size_t number) const { return surprises_[number]; }
   const Model& model() const { return model_; }
   /// The track of a number from 0 on: its event types.

@@ -10,8 +10,9 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Fewer messages do not say whether the source repeats itself at times.
-constexpr double kFewestMessages = 300;
+// A GPS without a fix, and a robot that stands, repeat themselves for as long as they like. Fewer
+// starts do not say that they never do.
+constexpr std::size_t kFewestStarts = 3;
 // Who repeats itself more often, as a share of its messages, may do so for ever.
 constexpr double kMostRepeats = 0.5;
 // Fewer repetitions, in mean gaps, may be a message that was sent twice.
@@ -25,6 +26,23 @@ double gapsBeyondChance(const AttributeCounts& counts) {
       (static_cast<double>(counts.repeats) + 1) / (static_cast<double>(counts.counted()) + 2);
   return std::max(kFewestGaps, std::log(kByChance) / std::log(repeats));
 }
+
+/// For how long an event type was heard, and in how many starts.
+struct HeardFor {
+  HeardFor(const Statistics& counts, EventId id, const Tuning& tuning)
+      : time(counts.type(id).gap_sum) {
+    std::vector<Span> spans;
+    for (const Statistics::Recording& recording : counts.recordings()) {
+      if (id < recording.events.size() && recording.events[id] > 0) {
+        spans.push_back({recording.start, recording.end, recording.robot_start, recording.robot});
+      }
+    }
+    starts = numberOfStarts(spans, toNanoseconds(tuning.start_time));
+  }
+
+  std::int64_t time;  // [ns]
+  std::size_t starts;
+};
 
 struct ContentOfMessages {
   struct Usual {
@@ -58,13 +76,30 @@ struct ContentOfMessages {
 
 }  // namespace
 
+std::string Frozen::whyNot(const Statistics& counts, EventId id, const Tuning& tuning) const {
+  const AttributeCounts& content = counts.type(id).attributes;
+  const double longest = toSeconds(content.longest_repeat);
+  const HeardFor heard(counts, id, tuning);
+  char text[100] = "";
+  if (counts.vocabulary().tellsMode(id) || content.counted() == 0) {
+    return text;  // nothing of its messages is known
+  }
+  if (longest > gapsBeyondChance(content) * 1e-9 * counts.type(id).meanGap()) {
+    std::snprintf(text, sizeof text, "it repeated for %.0f s in training", longest);
+  } else if (static_cast<double>(content.repeats) >
+             kMostRepeats * static_cast<double>(content.counted())) {
+    return "it repeats itself";
+  } else if (toSeconds(heard.time) < tuning.changing_time || heard.starts < kFewestStarts) {
+    std::snprintf(text, sizeof text, "%.1f h in %zu start%s, %.0f h in %zu are needed",
+                  toSeconds(heard.time) / 3600, heard.starts, heard.starts == 1 ? "" : "s",
+                  tuning.changing_time / 3600, kFewestStarts);
+  }
+  return text;
+}
+
 std::vector<Track> Frozen::watch(const Choice& choice) const {
-  return tracksOfMessages(*this, choice, [&](const AttributeCounts& counts) {
-    const auto counted = static_cast<double>(counts.counted());
-    return counted >= kFewestMessages &&
-           static_cast<double>(counts.repeats) <= kMostRepeats * counted &&
-           toSeconds(counts.longest_repeat) <= choice.tuning.longest_repeat;
-  });
+  return tracksOfMessages(
+      *this, choice, [&](EventId id) { return whyNot(choice.both, id, choice.tuning).empty(); });
 }
 
 std::unique_ptr<const Expectation> Frozen::expect(const Model& model, const Halves& /*halves*/,

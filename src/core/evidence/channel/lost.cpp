@@ -94,7 +94,8 @@ struct NumbersOfMessages {
 }  // namespace
 
 std::vector<Track> Lost::watch(const Choice& choice) const {
-  return tracksOfMessages(*this, choice, [](const AttributeCounts& counts) {
+  return tracksOfMessages(*this, choice, [&](EventId id) {
+    const AttributeCounts& counts = choice.both.type(id).attributes;
     const auto next =
         static_cast<double>(counts.steps[static_cast<std::size_t>(Attributes::Step::kNext)]);
     const auto numbered = static_cast<double>(counts.numbered());

@@ -26,13 +26,13 @@ inline bool knowsMessages(const Choice& choice, EventId id) {
 }
 
 /// The tracks of a channel for all event types that it supports.
-/// @param supports given their AttributeCounts
+/// @param supports given an event type
 template <typename Supports>
 std::vector<Track> tracksOfMessages(const Channel& channel, const Choice& choice,
                                     Supports supports) {
   std::vector<Track> tracks;
   for (EventId id = 0; id < choice.both.size(); ++id) {
-    if (knowsMessages(choice, id) && supports(choice.both.type(id).attributes)) {
+    if (knowsMessages(choice, id) && supports(id)) {
       tracks.push_back({&channel, id, id});
     }
   }

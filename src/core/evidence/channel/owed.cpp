@@ -102,7 +102,6 @@ class OwedState : public ChannelState {
   }
 
   const Model& model_;
-  std::int64_t start_time_;  // [ns]
   std::vector<Answer> owed_;
   std::vector<OfType> asks_;  // by id
 };
@@ -112,9 +111,7 @@ std::unique_ptr<ChannelState> ExpectedAnswers::start() const {
 }
 
 OwedState::OwedState(const ExpectedAnswers& expected)
-    : model_(expected.model()),
-      start_time_(toNanoseconds(model_.tuning().start_time)),
-      asks_(model_.size()) {
+    : model_(expected.model()), asks_(model_.size()) {
   for (const std::size_t track : expected.tracks()) {
     const auto number = static_cast<std::uint32_t>(owed_.size());
     asks_[model_.tracks()[track].from].asked.push_back(number);
@@ -124,11 +121,10 @@ OwedState::OwedState(const ExpectedAnswers& expected)
 }
 
 void OwedState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
-  const bool started = heard.windowEnd() - heard.start() >= start_time_;
   for (const Answer& answer : owed_) {
-    // Who was not heard yet may still be starting.
-    const bool owes = started || heard.hasSeen(model_.tracks()[answer.track].to);
-    evidence[answer.track] = answer.requests == 0 || !owes ? 0 : waiting(answer, heard);
+    // Who was never heard is NeverHeard's matter.
+    const bool owes = answer.requests > 0 && heard.hasSeen(model_.tracks()[answer.track].to);
+    evidence[answer.track] = owes ? waiting(answer, heard) : 0;
   }
 }
 

@@ -67,7 +67,7 @@ struct SizeOfMessages {
 }  // namespace
 
 std::vector<Track> Size::watch(const Choice& choice) const {
-  return tracksOfMessages(*this, choice, [](const AttributeCounts&) { return true; });
+  return tracksOfMessages(*this, choice, [](EventId) { return true; });
 }
 
 std::unique_ptr<const Expectation> Size::expect(const Model& model, const Halves& halves,

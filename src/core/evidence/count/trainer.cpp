@@ -53,12 +53,6 @@ void Trainer::endRecording() {
   countWaiting();
   if (last_stamp_) {
     recording_.end = newest_stamp_;
-    for (EventId id = 0; id < last_seen_.size(); ++id) {
-      if (recording_.events[id] > 1) {
-        std::int64_t& longest = recording_.longest_gaps[id];
-        longest = std::max(longest, newest_stamp_ - stood_still_ - kEnding - last_seen_[id].stamp);
-      }
-    }
     statistics_->addRecording(std::move(recording_));
   }
   recording_ = {};

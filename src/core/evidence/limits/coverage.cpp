@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <set>
 #include <stdexcept>
 
 #include "core/evidence/channel/channel.h"
+#include "core/evidence/channel/channels.h"
 #include "self_awareness/core/evidence/count/gap_distribution.h"
 #include "self_awareness/core/stream/event.h"
 
@@ -38,6 +40,34 @@ std::string rounded(double seconds, const std::string& unit) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", std::strtod(digits, nullptr));
   return text + unit;
+}
+
+void addBlind(const Model& model, const Limits& limits, std::vector<Coverage>& coverages) {
+  for (const Channel* channel : channels()) {
+    if (channel->about().empty() || !model.tuning().isOn(channel->name())) {
+      continue;
+    }
+    std::set<EventId> watched;
+    std::set<EventId> judged;
+    for (std::size_t number = 0; number < model.tracks().size(); ++number) {
+      const Track& track = model.tracks()[number];
+      if (track.channel == channel) {
+        (std::isnan(limits.tracks[number]) ? watched : judged).insert(track.to);
+      }
+    }
+    for (EventId id = 0; id < model.size(); ++id) {
+      const bool is_known =
+          static_cast<double>(model.statistics().type(id).gaps) >= model.tuning().fewest_gaps;
+      const bool may_be = watched.count(id) > 0 || (is_known && channel->isOfAttributes());
+      const std::string why = may_be && judged.count(id) == 0
+                                  ? channel->whyNot(model.statistics(), id, model.tuning())
+                                  : "";
+      if (!why.empty()) {
+        coverages[model.componentIndex(id)].blind.push_back(
+            {channel->about(), model.vocabulary().at(id).scope, why});
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -93,13 +123,13 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
     const Finding finding = model.finding(number);
     const bool accepted = track.to < may_be_silent.size() && may_be_silent[track.to];
     const bool judged = !std::isnan(limit);
-    if (accepted && (finding == Finding::kSilent || finding == Finding::kUnanswered)) {
+    if (accepted && isAbsence(finding)) {
       of.accepted = of.accepted || judged;
     } else if (finding == Finding::kSilent && judged) {
       // It is looked at when a window ends, and certain when the next one does.
       const double found = toSeconds(model.ageBeyond(track.to, limit) + 2 * window);
       of.death_found_after = std::min(of.death_found_after.value_or(found), found);
-    } else if (finding == Finding::kUnanswered && judged) {
+    } else if (isAbsence(finding) && judged) {
       const double found = model.expectation(number).timeUntil(number, limit) * 1e-9 +
                            toSeconds(kAlarmWindows * window);
       of.found_when_asked = std::min(of.found_when_asked.value_or(found), found);
@@ -112,6 +142,7 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
       }
     }
   }
+  addBlind(model, limits, coverages);
   for (Coverage& of : coverages) {
     of.more_starts = of.late_answers ? 0 : of.more_starts;
     of.graph_helps = of.graph_helps && !of.late_answers;

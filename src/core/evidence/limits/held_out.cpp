@@ -63,29 +63,23 @@ double HeldOut::scale(const Level& level) const {
 }
 
 void HeldOut::add(const std::vector<double>& largest, double least) {
-  ++tracks_;
   for (Level& level : levels_) {
     const double logarithm = exceedance(level, largest, least);
     if (logarithm > std::log(tuning_.least_excess)) {
       level.exceedances += 1;
       level.logarithms += logarithm - std::log(tuning_.least_excess);
-      level.most = std::max(level.most, logarithm);
     }
   }
 }
 
-double HeldOut::margin(double rate, double least) const {
-  double margin = least;
+double HeldOut::margin(double rate) const {
+  double margin = 1;
   for (const Level& level : levels_) {
     if (level.eligible_hours > 0) {
       // What was not seen yet may come: half an exceedance stands for it.
       const double expected = std::max(level.exceedances, 0.5) / (level.eligible_hours * rate);
-      const double logarithm =
-          std::log(tuning_.least_excess) + scale(level) * std::max(std::log(expected), 0.0);
-      const double most = static_cast<double>(tracks_) >= tuning_.many_tracks
-                              ? level.most + std::log(tuning_.least_margin)
-                              : logarithm;
-      margin = std::max(margin, std::exp(std::min(logarithm, most)));
+      margin = std::max(margin, std::exp(std::log(tuning_.least_excess) +
+                                         scale(level) * std::max(std::log(expected), 0.0)));
     }
   }
   return margin;

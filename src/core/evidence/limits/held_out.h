@@ -30,10 +30,9 @@ class HeldOut {
   /// @param least limit of the track: smaller values do not matter
   void add(const std::vector<double>& largest, double least);
 
-  /// Margin: a limit is so many times the largest value that was seen.
+  /// Margin, 1 or more: a limit is so many times the largest value that was seen.
   /// @param rate exceedances an hour that are allowed to all tracks together
-  /// @param least margin
-  double margin(double rate, double least) const;
+  double margin(double rate) const;
   /// By how much the largest value of a track exceeded those of all other samples; 1 if it did
   /// not, or if there is nothing to compare it with.
   double excess(const std::vector<double>& largest, double least) const;
@@ -46,7 +45,6 @@ class HeldOut {
     double eligible_hours = 0;          // of groups that the others can judge
     double exceedances = 0;
     double logarithms = 0;  // their sum, of by how much
-    double most = 0;        // the largest of them
   };
 
   static Level levelOf(const std::vector<Part>& parts, std::vector<std::size_t> group_of);
@@ -56,7 +54,6 @@ class HeldOut {
 
   double prior_scale_;
   const Tuning& tuning_;
-  std::size_t tracks_ = 0;
   std::vector<Level> levels_;  // by sample first
 };
 

@@ -10,6 +10,7 @@
 
 #include "core/evidence/channel/channels.h"
 #include "core/evidence/count/starts.h"
+#include "core/evidence/limits/heads_and_tails.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -31,10 +32,6 @@ double sumOf(const std::vector<Part>& parts) {
   return hours;
 }
 
-bool heardIn(const Statistics::Recording& recording, EventId id) {
-  return id < recording.events.size() && recording.events[id] > 0;
-}
-
 /// 0: there are fewer than two.
 double secondLargest(std::vector<double> values) {
   if (values.size() < 2) {
@@ -42,12 +39,6 @@ double secondLargest(std::vector<double> values) {
   }
   std::nth_element(values.begin(), values.begin() + 1, values.end(), std::greater<>());
   return values[1];
-}
-
-std::vector<double> largerOf(std::vector<double> values, const std::vector<double>& others) {
-  std::transform(values.begin(), values.end(), others.begin(), values.begin(),
-                 [](double one, double other) { return std::max(one, other); });
-  return values;
 }
 
 /// False alarms an hour that limits are made for. By the training alone, they promise one in so
@@ -164,12 +155,10 @@ std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t 
   Seen seen{track, model_.leastLimit(track), {}, {}};
   if (model_.finding(track) == Finding::kSilent) {
     const EventId id = model_.tracks()[track].to;
-    const bool mostly_silent = isMostlySilent(id);
-    const std::vector<double> gaps = gapsOf(id);
-    const std::vector<double> late = lateFirstsOf(id, mostly_silent);
-    seen.largest = largerOf(gaps, late);
-    seen.agreed = largerOf(agreedOn(gaps), late);
-    const Kind kind = mostly_silent ? Kind::kOthers : kindOfGaps(seen);
+    seen.largest = gapsOf(id);
+    seen.agreed = agreedOn(seen.largest);
+    const Kind kind =
+        isOftenSilent(model_.statistics(), id, tuning_) ? Kind::kOthers : kindOfGaps(seen);
     if (kind == Kind::kOthers) {
       seen.agreed = seen.largest;  // a pause may be as long as it likes
     }
@@ -182,72 +171,27 @@ std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t 
   return {{Kind::kEvidence, channelLabel(model_.tracks()[track])}, seen};
 }
 
-bool LimitSearch::isMostlySilent(EventId id) const {
-  double heard_in = 0;  // length of the recordings [ns]
-  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    heard_in += heardIn(recording, id) ? static_cast<double>(recording.end - recording.start) : 0;
-  }
-  const Statistics::Type& type = model_.statistics().type(id);
-  auto talks = static_cast<double>(type.gap_sum);
-  for (const std::int64_t gap : type.longest_gaps) {
-    const auto pause = static_cast<double>(gap);
-    talks -= pause > tuning_.regular * type.meanGap() ? pause : 0;
-  }
-  return 2 * talks < heard_in;
-}
-
 std::vector<double> LimitSearch::gapsOf(EventId id) const {
   std::vector<double> longest;
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    longest.push_back(heardIn(recording, id) ? asTold(recording.longest_gaps[id]) : 0);
+    const std::int64_t gap = isHeardIn(recording, id) ? recording.longest_gaps[id] : 0;
+    const std::int64_t cut_off = robots_.lacks(recording.robot, id)
+                                     ? 0
+                                     : headOrTail(model_.statistics(), recording, id, tuning_);
+    longest.push_back(asTold(std::max(gap, cut_off)));
   }
   for (const GapPart& part : gap_parts_) {
-    longest.push_back(asTold(part.said->longest_gaps[id]));
+    const bool never = !part.of->firsts.empty() && part.of->firsts[id] < 0 &&
+                       !robots_.lacks(part.of->robot, id) &&
+                       isOftenSilent(model_.statistics(), id, tuning_);
+    longest.push_back(asTold(never ? part.of->end - part.of->start : part.said->longest_gaps[id]));
   }
   return longest;
-}
-
-std::vector<double> LimitSearch::lateFirstsOf(EventId id, bool mostly_silent) const {
-  // Who always comes as late only takes so long to start.
-  const std::int64_t fastest = mostly_silent ? 0 : fastestFirst(id);
-  const std::int64_t pause = mostly_silent ? 0 : toNanoseconds(tuning_.start_time);
-  const auto lateOf = [=](std::int64_t first) {
-    return first - fastest > pause ? asTold(first - fastest) : 0;
-  };
-  std::vector<double> late;
-  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    late.push_back(heardIn(recording, id)               ? lateOf(recording.firsts[id])
-                   : robots_.lacks(recording.robot, id) ? 0
-                                                        : lateOf(recording.end - recording.start));
-  }
-  for (const GapPart& part : gap_parts_) {
-    const std::vector<std::int64_t>& firsts = part.of->firsts;
-    const bool begins = part.said == &part.of->parts.front() && !firsts.empty();
-    const std::int64_t never =
-        robots_.lacks(part.of->robot, id) ? 0 : part.of->end - part.of->start;
-    late.push_back(lateOf(!begins ? 0 : firsts[id] < 0 ? never : firsts[id]));
-  }
-  return late;
 }
 
 double LimitSearch::asTold(std::int64_t gap) const {
   // Windows tell ages no better than this, and hiccups of a host add to a gap, however long.
   return gap > 0 ? static_cast<double>(gap) + window() : 0;
-}
-
-std::int64_t LimitSearch::fastestFirst(EventId id) const {
-  std::int64_t fastest = kLongestAge;
-  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    if (heardIn(recording, id)) {
-      fastest = std::min(fastest, recording.firsts[id]);
-    }
-  }
-  for (const GapPart& part : gap_parts_) {
-    if (!part.of->firsts.empty() && part.of->firsts[id] >= 0) {
-      fastest = std::min(fastest, part.of->firsts[id]);
-    }
-  }
-  return fastest;
 }
 
 LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
@@ -318,13 +262,14 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
       held_out.add(seen.agreed, seen.least);
     }
   }
-  const Margins margins = model_.tracks()[tracks.front().track].channel->margins(tuning_);
-  const double margin = std::min(held_out.margin(share, margins.least), margins.most);
+  const double told = held_out.margin(share);
   const double rate = share / static_cast<double>(tracks.size());
   for (const Seen& seen : tracks) {
     // A track that would have raised an alarm had its worst start been left out gets a wider
     // limit.
     const bool of_one = isOfOneRobot(seen.track);  // what the others say of it is nothing
+    const Margins bounds = model_.tracks()[seen.track].channel->margins(tuning_);
+    const double margin = std::clamp(told, bounds.least, bounds.most);
     const double own = gaps || of_one
                            ? margin
                            : std::max(margin, std::min(held_out.excess(seen.agreed, seen.least),
@@ -411,15 +356,9 @@ GapTail LimitSearch::tailOf(Statistics::Type gaps, std::size_t track, double sta
   const EventId id = model_.tracks()[track].to;
   gaps.longest_gaps.resize(
       std::min(gaps.longest_gaps.size(), static_cast<std::size_t>(tuning_.pauses)));
-  // What began before the first event of a recording, or ended after its last one.
-  double cut_off = 0;
   const double usual = tuning_.regular * model_.meanGap(id);
-  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    cut_off += static_cast<double>(recording.end - recording.start) - 2 * usual;
-  }
-  cut_off -= static_cast<double>(gaps.gap_sum);
-  return {gaps.longest_gaps,   sumOf(with_gaps_), usual, std::max(cut_off, 0.0), starts,
-          tuning_.prior_pauses};
+  const double cut_off = headsAndTails(model_.statistics(), id, tuning_);
+  return {gaps.longest_gaps, sumOf(with_gaps_), usual, cut_off, starts, tuning_.prior_pauses};
 }
 
 }  // namespace self_awareness::core::evidence

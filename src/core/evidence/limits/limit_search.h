@@ -54,19 +54,10 @@ class LimitSearch {
   void gatherParts(const LimitFinder::Findings& findings);
   /// What a track showed, and the pool that it belongs to.
   std::pair<Pool, Seen> seenBy(std::size_t track) const;
-  /// Whether it is silent for more than half of the time of the recordings that it is heard in:
-  /// when it does not begin at once, that is a pause, and no start-up.
-  bool isMostlySilent(EventId id) const;
   /// Longest gaps by part [ns], as long as windows can tell them.
   std::vector<double> gapsOf(EventId id) const;
-  /// By part, by how much later than in the fastest recording its first event came [ns], where
-  /// that is no start-up; of recordings that never heard it, it is their end; of robots that lack
-  /// it, there is none.
-  std::vector<double> lateFirstsOf(EventId id, bool mostly_silent) const;
   /// A gap, as long as windows can tell it [ns]; 0: there is none.
   double asTold(std::int64_t gap) const;
-  /// Shortest time to the first event of a type, of all recordings that heard it [ns].
-  std::int64_t fastestFirst(EventId id) const;
   Kind kindOfGaps(const Seen& seen) const;
   /// Longest gaps by part, as far as most starts agree on them: where five heard it, what one
   /// shows much longer than all others do was a fault, and counts as these.

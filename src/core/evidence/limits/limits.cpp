@@ -9,6 +9,7 @@
 
 #include "core/evidence/channel/channel.h"
 #include "core/evidence/channel/scorer.h"
+#include "core/evidence/limits/heads_and_tails.h"
 #include "core/evidence/limits/limit_search.h"
 #include "core/evidence/limits/misleading_pairs.h"
 #include "core/evidence/watch/relations.h"
@@ -54,6 +55,8 @@ void LimitFinder::startScoring() {
   scorer_->leaveOut(Finding::kSilent);  // the longest gaps say it
   settled_at_.assign(model_->size(), kNever);
   settling_.clear();
+  heard_now_.assign(model_->size(), false);
+  waiting_.assign(model_->tracks().size(), 0);
   stood_still_until_ = 0;
   recording_ = {};
   recording_.robot_start = robot_start_;
@@ -91,9 +94,11 @@ std::optional<ObservedEvent> LimitFinder::observe(const Event& event) {
   if (event.id < settled_at_.size() && settled_at_[event.id] == kNever) {
     settled_at_[event.id] = event.stamp + parameters_.settle_time;
     settling_.push_back(event.id);
+    endHeadOrTail(event.id, event.stamp - *first_stamp_);
   }
   const ObservedEvent observed{event, !model_->knows(event.id), scorer_->add(event)};
   if (!observed.unknown) {
+    heard_now_[event.id] = true;
     if (observed.gap && hasSettled(event.stamp)) {
       std::int64_t& longest = recording_.parts.back().longest_gaps[event.id];
       longest = std::max(longest, *observed.gap);
@@ -158,8 +163,7 @@ void LimitFinder::endRecording() {
   first_stamp_.reset();
   for (EventId id = 0; id < model_->size(); ++id) {
     if (const std::optional<std::int64_t> last = scorer_->heard().lastSeen(id)) {
-      std::int64_t& longest = recording_.parts.back().longest_gaps[id];
-      longest = std::max(longest, recording_.end - kEnding - *last);
+      endHeadOrTail(id, recording_.end - *last);
     }
   }
   misleading_->finish();
@@ -168,12 +172,26 @@ void LimitFinder::endRecording() {
   recording_ = {};
 }
 
+void LimitFinder::endHeadOrTail(EventId id, std::int64_t length) {
+  const bool counts = isOftenSilent(model_->statistics(), id, model_->tuning());
+  Recording::Part& part = recording_.parts.back();
+  part.longest_gaps[id] = std::max(part.longest_gaps[id], counts ? length : 0);
+  for (std::size_t track = 0; track < waiting_.size(); ++track) {
+    if (model_->tracks()[track].to == id) {
+      part.evidence[track] = std::max(part.evidence[track], counts ? waiting_[track] : 0);
+      waiting_[track] = 0;
+    }
+  }
+}
+
 void LimitFinder::close(const Window& window, std::int64_t end) {
   if (end < window.start + parameters_.window) {
     return;  // the recording ends within its last window
   }
   forgetStarts(window.start);
   const std::vector<double>& evidence = scorer_->closeWindow(end);
+  std::vector<bool> heard(model_->size(), false);
+  heard.swap(heard_now_);
   if (end - parameters_.window < *first_stamp_ + parameters_.settle_time ||
       !hasSettled(end - parameters_.window)) {
     return;
@@ -188,7 +206,11 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
     const Track& watched = model_->tracks()[track];
     if (evidence[track] > 0 &&
         !(watched.channel->isOfAttributes() && window.start < settled_at_[watched.to])) {
-      part.evidence[track] = std::max(part.evidence[track], static_cast<float>(evidence[track]));
+      waiting_[track] = std::max(waiting_[track], static_cast<float>(evidence[track]));
+    }
+    if (heard[watched.to]) {
+      part.evidence[track] = std::max(part.evidence[track], waiting_[track]);
+      waiting_[track] = 0;
     }
   }
 }

@@ -301,17 +301,24 @@ TEST(Frozen, IsOffWhereTrainingRepeatsItself) {
   EXPECT_TRUE(watches(*model, kFrozen, kB));
 }
 
-TEST(Frozen, WhatTrainingRepeatedForAWhileMayBeRepeatedForAsLong) {
-  // The same for 5 s, then something new at every message for 20 s.
-  const auto change = [](Event& event, std::size_t number) {
-    event.attributes.same = number % 250 < 50;
-  };
-  const auto model = learned(recordingsWhere(change));
-  ASSERT_TRUE(watches(*model, kFrozen));
-  EXPECT_FALSE(alarmIn(*model, recordingsWhere(change)[0]));
-  const std::size_t track = indexOf(model->watched.tracks, kFrozen, kA, kA);
-  EXPECT_GE(model->limits()->tracks[track], 1.25 * 5);
-  EXPECT_LE(model->limits()->tracks[track], 4 * 5);
+TEST(Frozen, IsOffWhereTrainingRepeatedItselfForAWhileAndSaysSo) {
+  // As a GPS without a fix: the same for 5 s, then something new at every message for 20 s.
+  const auto model = learned(recordingsWhere(
+      [](Event& event, std::size_t number) { event.attributes.same = number % 250 < 50; }));
+  EXPECT_FALSE(watches(*model, kFrozen));
+  EXPECT_TRUE(watches(*model, kFrozen, kB));
+  const std::vector<Coverage::Blind> blind = blindIn(*model);
+  ASSERT_EQ(blind.size(), 1U);
+  EXPECT_EQ(blind[0].about, "content");
+  EXPECT_EQ(blind[0].topic, "/x");
+  EXPECT_EQ(blind[0].why, "it repeated for 5 s in training");
+}
+
+TEST(Frozen, MinutesOfTrainingDoNotSayThatContentsAlwaysChange) {
+  const auto model = learned({robot({}, 0), robot({}, 1), robot({}, 2)}, Tuning{});
+  EXPECT_FALSE(watches(*model, kFrozen));
+  ASSERT_EQ(blindIn(*model).size(), 2U);
+  EXPECT_EQ(blindIn(*model)[0].why, "0.2 h in 3 starts, 2 h in 3 are needed");
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST(HeldOut, WhatIsLongerThanTheRestIsNotJudgedByIt) {
 TEST(HeldOut, OneRecordingAllowsNoEstimate) {
   HeldOut held_out({{0, 1}}, kScale, kTuning);
   held_out.add({100}, 1);
-  EXPECT_DOUBLE_EQ(held_out.margin(1e-9, 1.25), 1.25);
+  EXPECT_DOUBLE_EQ(held_out.margin(1e-9), 1);
   EXPECT_DOUBLE_EQ(held_out.excess({100}, 1), 1);
 }
 
@@ -56,7 +56,7 @@ TEST(HeldOut, OneStartIsStillJudgedByItsParts) {
   HeldOut held_out({{0, 1}, {0, 1}, {0, 1}}, kScale, kTuning);
   held_out.add({10, 20, 10}, 5);
   EXPECT_DOUBLE_EQ(held_out.excess({10, 20, 10}, 5), 1) << "of starts";
-  EXPECT_GT(held_out.margin(0.01, 1.25), 1.25);
+  EXPECT_GT(held_out.margin(0.01), 1.25);
 }
 
 TEST(HeldOut, TheMarginFollowsAnExponentialTailOfLogarithms) {
@@ -65,21 +65,20 @@ TEST(HeldOut, TheMarginFollowsAnExponentialTailOfLogarithms) {
   const double scale = (std::log(3.0) - std::log(1.1) + 5 * kScale) / (1 + 5);
   const HeldOut held_out = afterExcesses({3, 1.05, 1});
   for (const double rate : {0.1, 0.01, 0.001}) {
-    EXPECT_NEAR(held_out.margin(rate, 1), 1.1 * std::pow(1 / (3 * rate), scale), 1e-12);
+    EXPECT_NEAR(held_out.margin(rate), 1.1 * std::pow(1 / (3 * rate), scale), 1e-12);
   }
 }
 
 TEST(HeldOut, WithoutAnExceedanceTheMarginIsMadeForHalfAnOne) {
   const HeldOut held_out = afterExcesses({1, 1});
-  EXPECT_NEAR(held_out.margin(0.01, 1), 1.1 * std::pow(0.5 / (3 * 0.01), kScale), 1e-12);
+  EXPECT_NEAR(held_out.margin(0.01), 1.1 * std::pow(0.5 / (3 * 0.01), kScale), 1e-12);
 }
 
 TEST(HeldOut, AMarginGrowsAsTheAllowedRateFalls) {
   for (const HeldOut& held_out : {afterExcesses({1, 1}), afterExcesses({2, 1.5, 1, 3})}) {
     double before = 0;
     for (double rate = 10; rate > 1e-4; rate /= 3) {
-      const double margin = held_out.margin(rate, 1.25);
-      EXPECT_GE(margin, 1.25);
+      const double margin = held_out.margin(rate);
       EXPECT_GE(margin, before);
       before = margin;
     }
@@ -90,29 +89,18 @@ TEST(HeldOut, AMarginGrowsAsTheAllowedRateFalls) {
 TEST(HeldOut, ASmallerScaleIsBelievedUntilMoreIsSeen) {
   HeldOut timers(kThreeHours, kScale / 4, kTuning);
   HeldOut others(kThreeHours, kScale, kTuning);
-  EXPECT_LT(timers.margin(0.01, 1), others.margin(0.01, 1));
+  EXPECT_LT(timers.margin(0.01), others.margin(0.01));
   for (int k = 0; k < 1000; ++k) {
     timers.add({10, 20, 10}, 5);
     others.add({10, 20, 10}, 5);
   }
-  EXPECT_NEAR(timers.margin(0.01, 1), others.margin(0.01, 1), 0.02);
+  EXPECT_NEAR(timers.margin(0.01) / others.margin(0.01), 1, 0.02);
 }
 
 TEST(HeldOut, MoreExceedancesNeedAWiderMargin) {
-  EXPECT_LT(afterExcesses({1, 1, 1}).margin(0.01, 1), afterExcesses({2, 1, 1}).margin(0.01, 1));
-  EXPECT_LT(afterExcesses({2, 1, 1}).margin(0.01, 1), afterExcesses({2, 2, 2}).margin(0.01, 1));
-  EXPECT_LT(afterExcesses({2, 2, 2}).margin(0.01, 1), afterExcesses({4, 4, 4}).margin(0.01, 1));
-}
-
-TEST(HeldOut, WhatManyTracksNeverShowedIsNotFeared) {
-  // Timers that always keep their period do not need the margin of a few unknown tracks.
-  const std::vector<double> few(3, 1.0);
-  const std::vector<double> many(100, 1.0);
-  EXPECT_GT(afterExcesses(few).margin(1e-4, 1), 1.5);
-  EXPECT_NEAR(afterExcesses(many).margin(1e-4, 1), 1.25, 1e-12);
-  std::vector<double> one(100, 1.0);
-  one[0] = 1.4;
-  EXPECT_NEAR(afterExcesses(one).margin(1e-12, 1), 1.4 * 1.25, 1e-12);
+  EXPECT_LT(afterExcesses({1, 1, 1}).margin(0.01), afterExcesses({2, 1, 1}).margin(0.01));
+  EXPECT_LT(afterExcesses({2, 1, 1}).margin(0.01), afterExcesses({2, 2, 2}).margin(0.01));
+  EXPECT_LT(afterExcesses({2, 2, 2}).margin(0.01), afterExcesses({4, 4, 4}).margin(0.01));
 }
 
 }  // namespace

@@ -20,11 +20,18 @@ struct Track {
 /// Whom the evidence of a channel speaks against, and how (docs/method.md, section 6).
 enum class Finding {
   kSilent,      ///< `to` has not come for too long
-  kUnanswered,  ///< `to` has not come since `from` asked for it, or while `from` goes on
+  kAbsent,      ///< `to` has not come while `from` goes on
+  kUnanswered,  ///< `to` has not come since `from` asked for it
   kFewer,       ///< `to` comes too seldom
   kUnusual,     ///< something is wrong with `to`, whatever the others do
   kBetween      ///< something is wrong with `to`, or with `from`
 };
+
+/// Whether `to` has not come.
+constexpr bool isAbsence(Finding finding) {
+  return finding == Finding::kSilent || finding == Finding::kAbsent ||
+         finding == Finding::kUnanswered;
+}
 
 /// The channel's name in model files and in Tuning::without.
 std::string channelName(const Track& track);

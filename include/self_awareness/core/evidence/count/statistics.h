@@ -22,10 +22,6 @@ constexpr std::int64_t kRateSpan = 2 * kNanosecondsPerSecond;
 /// @throw std::invalid_argument if the length is out of range
 std::size_t rateWindows(std::int64_t window);
 
-/// Who falls silent so shortly [ns] before a recording ends was most likely switched off with the
-/// robot, one node after the other.
-constexpr std::int64_t kEnding = 5 * kNanosecondsPerSecond;
-
 /// The counts that the evidence detector learns (docs/method.md, section 3.1). The counts of two
 /// trainings add up to those of a training on both.
 class Statistics {
@@ -64,8 +60,7 @@ class Statistics {
     std::int64_t longest_stall = 0;  ///< of the machine [ns]; 0: there was none
     /// By id; 0 for ids beyond. addRecording() leaves out what never came at the end.
     std::vector<std::uint64_t> events;
-    /// Longest time without an event [ns] by id, as long as events; 0: there were no two. Also the
-    /// time from the last one to kEnding before the recording's end.
+    /// Longest time between two events [ns] by id, as long as events; 0: there were no two.
     std::vector<std::int64_t> longest_gaps;
     /// From the start of the whole recording to the first event [ns] by id, as long as events; -1:
     /// it did not come.
@@ -86,6 +81,9 @@ class Statistics {
   void merge(const Statistics& other);
 
   const Vocabulary& vocabulary() const { return vocabulary_; }
+  /// Gives the event types other names.
+  /// @param vocabulary of the same ids
+  void rename(const Vocabulary& vocabulary) { vocabulary_ = vocabulary; }
   std::size_t size() const { return vocabulary_.size(); }
   Type& type(EventId id) { return types_.at(id); }
   const Type& type(EventId id) const { return types_.at(id); }

@@ -37,6 +37,15 @@ struct Coverage {
   /// one that it answers reach it.
   bool graph_helps = false;
 
+  /// What is not judged of a topic, though it looks as if it could be: "content of /fix: it
+  /// repeated for 522 s in training".
+  struct Blind {
+    std::string about;
+    std::string topic;
+    std::string why;
+  };
+  std::vector<Blind> blind{};
+
   /// Whether its death is found at all.
   bool isWatched() const { return death_found_after.has_value() || found_when_asked.has_value(); }
 };

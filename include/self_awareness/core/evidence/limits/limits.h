@@ -44,9 +44,10 @@ class LimitFinder : private WindowObserver {
     std::uint64_t windows = 0;     ///< looked at
     /// A part of it.
     struct Part {
-      std::uint64_t windows = 0;               ///< looked at
-      std::vector<float> evidence;             ///< the largest, by track; 0 for silences
-      std::vector<std::int64_t> longest_gaps;  ///< [ns], by id; 0: none
+      std::uint64_t windows = 0;    ///< looked at
+      std::vector<float> evidence;  ///< the largest, by track; 0 for silences
+      /// [ns], by id; 0: none. Of who is often silent, also what the recording cuts off.
+      std::vector<std::int64_t> longest_gaps;
     };
     std::vector<Part> parts;  ///< in order; the last one may be shorter
     std::vector<Said> said;   ///< by track
@@ -128,6 +129,9 @@ class LimitFinder : private WindowObserver {
   /// messages may be odd.
   /// @param now start of the window [ns]
   void forgetStarts(std::int64_t now);
+  /// Takes in the time before the first event of a type, or after its last one [ns], and what is
+  /// waiting of it, if that says something (heads_and_tails.h).
+  void endHeadOrTail(EventId id, std::int64_t length);
   void startPart();
   /// Joins neighbouring parts: they then last twice as long.
   void joinParts();
@@ -146,8 +150,12 @@ class LimitFinder : private WindowObserver {
   std::vector<std::int64_t> firsts_;         // of the recording, as in Recording
   std::vector<std::int64_t> settled_at_;     // when an event type has settled [ns], by id
   std::vector<EventId> settling_;            // those that have not
-  Recording recording_;                      // the open one
-  std::uint64_t part_windows_ = 0;           // length of its parts
+  std::vector<bool> heard_now_;              // in the open window, by id
+  // The largest evidence since a type was heard last, by track: it counts when the type is heard
+  // again, as nobody knows what of a silence that the recording cuts off is normal.
+  std::vector<float> waiting_;
+  Recording recording_;             // the open one
+  std::uint64_t part_windows_ = 0;  // length of its parts
   std::unique_ptr<MisleadingPairs> misleading_;
 
   Findings findings_;

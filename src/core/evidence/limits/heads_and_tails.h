@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+
+#include "self_awareness/core/evidence/count/statistics.h"
+#include "self_awareness/core/evidence/tuning.h"
+
+namespace self_awareness::core::evidence {
+
+/// What recordings cut off: the time until the first event of a type, and since its last. Nobody
+/// knows how long such a silence would have been. It says nothing of who hardly ever pauses: he
+/// started later, or was switched off before the recorder was. Who is often silent was silent
+/// then, too: it is a pause, of at least this length (docs/method.md, section 5.2).
+
+/// Whether a recording heard an event type.
+inline bool isHeardIn(const Statistics::Recording& recording, EventId id) {
+  return id < recording.events.size() && recording.events[id] > 0;
+}
+
+/// Whether a type is silent for more than a quarter of the time of the recordings that hear it.
+bool isOftenSilent(const Statistics& counts, EventId id, const Tuning& tuning);
+
+/// Length of all pauses that these recordings cut off [ns]; 0 of who is not often silent.
+double headsAndTails(const Statistics& counts, EventId id, const Tuning& tuning);
+
+/// The longest that a recording of the training cuts off [ns]: the time until the first event of
+/// the type, or, as only their sum is known, the mean of those since the last one; all of it where
+/// the type did not come. 0 of who is not often silent.
+std::int64_t headOrTail(const Statistics& counts, const Statistics::Recording& recording,
+                        EventId id, const Tuning& tuning);
+
+}  // namespace self_awareness::core::evidence
