@@ -3,7 +3,8 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Optional, Tuple
 
-from self_awareness import FEWEST_CLASSES, MOST_CLASSES, EncodingRules, yaml_file
+from self_awareness import (FEWEST_CLASSES, MOST_CLASSES, EncodingRules, resolved_name,
+                            yaml_file)
 from self_awareness.yaml_section import Section, shown
 
 Classes = Dict[str, Tuple[int, List[float]]]
@@ -84,7 +85,7 @@ def _mode(section: Section, value: Any) -> Optional[Tuple[str, str]]:
     if value == {}:
         return None
     with section.section('mode') as mode:
-        return mode.text('topic'), mode.text('field')
+        return resolved_name(mode.text('topic')), mode.text('field')
 
 
 def _renames(section: Section, value: Any) -> List[Tuple[str, str]]:

@@ -17,8 +17,8 @@ Judge = Callable[..., Verdicts]
 """Judges stamps and ids of a recording, and the silence up to its end [ns]. Further arguments: the
 event types by id, those of the model first (without, those of unknown events are not known), a
 ReplayedMonitor that is told of all of it, where the clock was set (clock_steps), how the machine
-was (waiting), on which computers sources ran (hosts), which subscriptions were missing, and the
-attributes of the messages (attributes)."""
+was (waiting), on which computers sources ran (hosts), which subscriptions were missing, the
+attributes of the messages (attributes), and who sent besides (senders)."""
 
 
 def paper_judge(trained: TrainedModel, model: PaperModel, threshold: Optional[float],
@@ -50,8 +50,10 @@ def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,
               clock_steps: Sequence[int] = (), waiting: Iterable[Waiting] = (),
               hosts: Optional[Dict[str, str]] = None,
               missing: Iterable[Tuple[int, Set[Tuple[str, str]]]] = (),
-              attributes: Optional[np.ndarray] = None) -> Verdicts:
+              attributes: Optional[np.ndarray] = None,
+              senders: Iterable[Tuple[int, Set[Tuple[str, str]], Set[EventType]]] = ()
+              ) -> Verdicts:
         return judge_by_evidence(trained, model, parameters, stamps, ids, end, list(event_types),
                                  monitor, clock_steps, list(waiting), hosts or {}, list(accepted),
-                                 list(missing), attributes)
+                                 list(missing), attributes, list(senders))
     return judge

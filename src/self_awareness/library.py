@@ -11,7 +11,8 @@ from self_awareness import (Alarm, Coverage, DetectorParameters, EncodingRules, 
 from self_awareness.calibration import limits
 from self_awareness.calibration.runs import check_unseen
 from self_awareness.judging import evidence_judge
-from self_awareness.recordings import BagPart, RecordingEvents, expand
+from self_awareness.parts import BagPart, expand
+from self_awareness.recordings import RecordingEvents
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting
 from self_awareness.workers import on_this_machine
@@ -130,7 +131,8 @@ class Model:
                                        recording.event_types, None, recording.clock_steps,
                                        waiting=recording.waiting, hosts=recording.hosts,
                                        missing=recording.missing,
-                                       attributes=recording.attributes))
+                                       attributes=recording.attributes,
+                                       senders=recording.senders))
 
     def coverage(self) -> List[Coverage]:
         """Return how soon the death of each component is found, and whether late answers are.

@@ -8,7 +8,8 @@ from typing import Any, Dict, List, Sequence
 
 from self_awareness import DetectorParameters, EvidenceModel, PaperModel, TrainedModel, Verdicts
 from self_awareness.judging import evidence_judge, paper_judge
-from self_awareness.recordings import BagPart, RecordingEvents, expand, read
+from self_awareness.parts import BagPart, expand
+from self_awareness.recordings import RecordingEvents, read
 from self_awareness.stamps import SECOND_NS
 
 

@@ -2,11 +2,15 @@
 from __future__ import annotations
 
 import copy
+import importlib
+import json
 import os
 import random
+import subprocess
+import sys
 import time
 from pathlib import Path
-from typing import Any, Callable, Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple
 
 import pytest
 import rosbag
@@ -117,7 +121,7 @@ def robot_bags(tmp_path_factory: pytest.TempPathFactory) -> Tuple[str, str]:
 def train_tuned(bags: Sequence[str], path: Path, detector: str = 'evidence',
                 **numbers: float) -> str:
     """Train with other numbers of the method, which no program does; return the model's path."""
-    from self_awareness.recordings import BagPart
+    from self_awareness.parts import BagPart
     from self_awareness.training import many_bags
     tuning = Tuning()
     for name, value in numbers.items():
@@ -153,3 +157,60 @@ def evidence_model(long_bags: Tuple[str, str], tmp_path_factory: pytest.TempPath
     assert train.main([long_bags[0], '--detector', 'both', '-o', path]) == 0
     assert calibrate.main(['--model', path, '--normal', long_bags[1], '-o', path]) == 0
     return path
+
+
+class Cases(NamedTuple):
+    """The robot of the cases.
+
+    Args:
+        folder: of the cases.
+        robot: the module that makes it.
+        model: trained on four of its recordings, calibrated on two.
+    """
+
+    folder: Path
+    robot: Any
+    model: str
+
+    def make(self, name: str, out: Path) -> Path:
+        """Write the bags of a case, but for the normal ones; return where they are."""
+        subprocess.run([sys.executable, str(self.folder / name / 'make.py')], check=True,
+                       env={**os.environ, 'OUT': str(out), 'SKIP_NORMAL': '1',
+                            'PYTHONDONTWRITEBYTECODE': '1'}, stdout=subprocess.DEVNULL)
+        return out
+
+
+@pytest.fixture(scope='session')
+def cases(shared: Path, tmp_path_factory: pytest.TempPathFactory) -> Cases:
+    """The robot of ../shared/cases, and a model of it."""
+    from self_awareness.commands import calibrate, train
+    folder = shared / 'cases'
+    if not (folder / 'lib' / 'robot.py').is_file():
+        pytest.skip(f'no folder {folder}')
+    out = tmp_path_factory.mktemp('normal')
+    sys.path.insert(0, str(folder / 'lib'))
+    try:
+        robot = importlib.import_module('robot')
+    finally:
+        sys.path.pop(0)
+    normal = [str(out / f'n{seed}.bag') for seed in range(1, 7)]
+    for seed, path in enumerate(normal, 1):
+        robot.standard(seed, 120).write(path)
+    model = str(out / 'm')
+    assert train.main([*normal[:4], '-o', model]) == 0
+    assert calibrate.main(['--model', model, '--normal', *normal[4:], '-o', model]) == 0
+    return Cases(folder, robot, model)
+
+
+@pytest.fixture
+def scored(cases: Cases, tmp_path: Path) -> Callable[..., Any]:
+    """Return a function that scores bags, and returns what is said of each."""
+    from self_awareness.commands import score
+
+    def scored(*bags: str, code: int = 0) -> Any:
+        said = tmp_path / 'said.json'
+        assert score.main([*bags, '--model', cases.model, '--json', str(said),
+                           '--report', str(tmp_path / 'r.html')]) == code
+        recordings: 'list[Dict[str, Any]]' = json.loads(said.read_text('utf-8'))['recordings']
+        return recordings
+    return scored

@@ -90,7 +90,7 @@ def test_nobody_tells_a_mode_unless_a_file_says_so(tmp_path: Path, text: str) ->
     ('mode: /state', 'mode'),
     ('mode: {topic: /state}', 'mode.field'),
     ('mode: {topic: /state, field: data, value: 1}', 'mode.value'),
-    ('mode: {topic: state, field: data}', 'mode'),
+    ('mode: {topic: ~state, field: data}', 'mode'),
     ('mode: {topic: /clock, field: clock}', 'mode'),
     ('include_topics: [/a]\nmode: {topic: /b, field: data}', 'mode'),
 ])

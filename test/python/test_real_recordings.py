@@ -12,7 +12,7 @@ import self_awareness
 from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, TrainedModel,
                             judge_by_evidence, read_events, recordings, summarise_bag)
 from self_awareness.commands import calibrate, score, train
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 
 PAPER = ('--detector', 'paper')
@@ -67,6 +67,20 @@ def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path:
     assert set(outage.suspects[:3]) == {'/motors_imu', '/urg_node', '/go_forward'}
     # The start-up is not normal either; between it and the outage the alarm clears.
     assert all(alarm.end < 24.0 for alarm in alarms if alarm.start < 24.0)
+
+
+def test_without_an_option_the_outage_is_found(wheeled_robot: Path, tmp_path: Path,
+                                               capsys) -> None:
+    """The start-up, until 23.8 s, is left out by itself."""
+    model = str(tmp_path / 'm')
+    assert train.main([*(str(wheeled_robot / f'{day}_normal.bag') for day in ('feb13', 'jan17')),
+                       '-o', model]) == 0
+    assert 'start-up left out of 1 of 2 recordings: the first 23.8 s' in capsys.readouterr().out
+    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
+    outage = next(alarm for alarm in alarms_of(capsys.readouterr().out) if alarm.end > 28.0)
+    assert 28.0 < outage.start < 31.0
+    assert outage.suspects[0] in ('/motors_imu', '/urg_node', '/go_forward')
+    assert '/slam_gmapping' not in outage.suspects, 'it goes on'
 
 
 def test_the_laser_that_is_gone_is_named(wheeled_robot: Path, tmp_path: Path, capsys) -> None:
@@ -131,7 +145,7 @@ def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_
     """The chunks of these recordings are compressed, too (bz2)."""
     folder, model = shared / 'data' / 'guardian', str(tmp_path / 'm')
     assert not summarise_bag(str(folder / 'facing_door.bag')).has_sources
-    _train(model, str(folder / 'facing_door.bag'))
+    _train(model, str(folder / 'facing_door.bag'), '--start', '0')
     assert 'source: none' in capsys.readouterr().out
     trained = TrainedModel.load(model)
     assert len(trained.event_types) == 17 and trained.events == 71213
@@ -159,7 +173,7 @@ def test_a_sparse_robot_names_the_types_too_rare_to_judge(shared: Path, tmp_path
     assert len(bags) == 3
     assert train.main([*bags, '-o', str(tmp_path / 'm')]) == 0
     listed = re.findall(r'^  (/\S+ /\S+ \S+): \d+ gaps?$', capsys.readouterr().out, re.MULTILINE)
-    assert len(listed) == 9
+    assert len(listed) == 3
 
 
 def test_every_recording_can_be_trained_on_and_scored(shared: Path, tmp_path: Path,
@@ -168,7 +182,7 @@ def test_every_recording_can_be_trained_on_and_scored(shared: Path, tmp_path: Pa
     assert len(bags) >= 14
     for bag in bags:
         model = str(tmp_path / bag.stem)
-        _train(model, str(bag))
+        _train(model, str(bag), '--start', '0')
         assert score.main([str(bag), '--model', model]) == 0
         rules = TrainedModel.load(model).encoding
         assert TrainedModel.load(model).events == len(read_events(str(bag), rules).stamps)
@@ -187,12 +201,19 @@ def of_voice_assistant(voice_assistant: Path) -> self_awareness.Model:
         'spk70_55db', 'spk70_65db', 'spk70_70db', 'spk80_70db')])
 
 
+def check_degraded(model: self_awareness.Model, bag: Path) -> None:
+    """Check who is to blame for a degraded run.
+
+    Where an answer never comes, that is no more than a suspicion, to the end: bags may lack it.
+    """
+    alarm = next(each for each in model.judge(bag) if each.level == 'ERROR' or not each.over)
+    assert alarm.culprit == '/lisa_mqtt_ros_bridge'
+
+
 @pytest.mark.parametrize('run', ['mic1_spk80_75db_level', 'array_spk70_75db_level'])
 def test_answers_that_stay_away_in_noise_are_found(
         voice_assistant: Path, of_voice_assistant: self_awareness.Model, run: str) -> None:
-    alarm = next(each for each in of_voice_assistant.judge(voice_assistant / f'{run}.bag')
-                 if each.level == 'ERROR')
-    assert alarm.culprit == '/lisa_mqtt_ros_bridge'
+    check_degraded(of_voice_assistant, voice_assistant / f'{run}.bag')
 
 
 @pytest.mark.parametrize('run', ['mic1_quiet', 'mic1_quiet_2', 'array_spk70_60db_level',
@@ -249,6 +270,4 @@ def test_learned_on_one_build_it_watches_another(voice_assistant: Path, tmp_path
     false = [run for run in normal if any(each.level == 'ERROR' for each in model.judge(
         voice_assistant / f'{run}.bag'))]
     assert len(false) <= most_false
-    alarm = next(each for each in model.judge(voice_assistant / f'{degraded}.bag')
-                 if each.level == 'ERROR')
-    assert alarm.culprit == '/lisa_mqtt_ros_bridge'
+    check_degraded(model, voice_assistant / f'{degraded}.bag')

@@ -12,7 +12,7 @@ from live_system import (MonitorListener, Process, again_if_disturbed, await_con
 from monitor_case import MonitorCase, Talker
 from self_awareness import Tuning
 from self_awareness.msg import SelfAwareness, Suspect
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.training import many_bags
 from self_awareness.workers import InProcess
 

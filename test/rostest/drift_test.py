@@ -14,7 +14,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from accept_test import TrainedCase, talker
 from live_system import MonitorListener, again_if_disturbed, await_condition
 from self_awareness import Tuning
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.training import many_bags
 
 LONGER_S = 12.0  # than the shortest time that counts

@@ -12,7 +12,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EventType
+from self_awareness import EventType, resolved_name
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
 STARVATION_DOUBLING_S = 20.0
@@ -92,8 +92,8 @@ def of_known_source(fault: InjectedFault, event_types: Sequence[EventType]) -> I
     sources = sorted({event_type.source for event_type in event_types})
     if fault.source in (None, EACH, *sources):
         return fault
-    if f'/{fault.source}' in sources:
-        return replace(fault, source=f'/{fault.source}')
+    if fault.source is not None and resolved_name(fault.source) in sources:
+        return replace(fault, source=resolved_name(fault.source))
     if sources == ['']:
         raise ValueError(f'{fault}: the model does not tell sources apart (source: none); only '
                          'starve can be injected')

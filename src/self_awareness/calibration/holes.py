@@ -12,16 +12,12 @@ from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import ENDING, Coverage, EventType, TrainedModel
-from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness import Coverage, EventType, TrainedModel
+from self_awareness.calibration import heads_and_tails
+from self_awareness.parts import BagPart
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
-_TIMES = 3.0
-_LEAST_S = 1.0
-"""A silence is a hole if it is so many times as long as that of any other recording, and so much
-longer."""
-
-_FEWEST_GAPS = 30
 _FEWEST_OTHERS = 2
 _SHORTEST_PART_S = 5.0
 
@@ -36,12 +32,10 @@ class Silence:
     Args:
         begin_s: from the recording's first message [s].
         length_s: of it [s].
-        to_the_end: the type does not come again.
     """
 
     begin_s: float
     length_s: float
-    to_the_end: bool = False
 
 
 Silences = Mapping[Key, Silence]
@@ -71,27 +65,13 @@ class Hole:
 
 
 def longest_silences(recording: RecordingEvents) -> Silences:
-    """Return the longest silence of every event type with at least 30 gaps.
-
-    What falls silent shortly before the end was most likely switched off with the robot.
-    """
-    # Few bits sort several times as fast, and there are hardly ever so many event types.
-    few = len(recording.event_types) <= np.iinfo(np.uint16).max
-    order = np.argsort(recording.ids.astype(np.uint16) if few else recording.ids, kind='stable')
-    ids, stamps = recording.ids[order], recording.stamps[order]
+    """Return the longest silence of every event type that came often."""
     found: Dict[Key, Silence] = {}
-    firsts = np.flatnonzero(np.diff(ids, prepend=ids[:1] + 1)) if len(ids) else ids
-    for begin, end in zip(firsts, [*firsts[1:], len(ids)]):
-        of_type = stamps[begin:end]
-        if len(of_type) <= _FEWEST_GAPS:
-            continue
-        gaps = np.diff(of_type)
+    for kind, stamps in heads_and_tails.often(recording):
+        gaps = np.diff(stamps)
         longest = int(np.argmax(gaps))
-        silence = _silence(recording, int(of_type[longest]), int(gaps[longest]))
-        tail = int(recording.stamps[-1]) - ENDING - int(of_type[-1])
-        if tail > gaps[longest]:
-            silence = _silence(recording, int(of_type[-1]), tail, to_the_end=True)
-        found[_key(recording.event_types[ids[begin]])] = silence
+        found[_key(kind)] = Silence((stamps[longest] - recording.origin) / SECOND_NS,
+                                    gaps[longest] / SECOND_NS)
     return found
 
 
@@ -124,7 +104,7 @@ def find(recordings: Sequence[Tuple[BagPart, Silences]],
             lengths_s += [known_s[key]] * _FEWEST_OTHERS
         most_s = max(lengths_s, default=0.0)
         if (len(lengths_s) >= _FEWEST_OTHERS
-                and longest.length_s > max(_TIMES * most_s, most_s + _LEAST_S)):
+                and heads_and_tails.is_longer(longest.length_s, most_s)):
             found.append(Hole(part, key, longest, most_s))
     return found
 
@@ -167,9 +147,9 @@ def _decides(hole: Hole, found_s: Optional[float]) -> bool:
 
 def _line(hole: Hole, found_s: Optional[float]) -> str:
     silence = hole.silence
-    until = 'to the end' if silence.to_the_end else f'for {silence.length_s:.1f} s'
-    text = (f'{hole.part}: {hole.component} ({hole.key[1]}) is silent {until} from '
-            f'{silence.begin_s:.1f} s on, {hole.others_s:.2g} s at most in the other recordings')
+    text = (f'{hole.part}: {hole.component} ({hole.key[1]}) is silent for '
+            f'{silence.length_s:.1f} s from {silence.begin_s:.1f} s on, {hole.others_s:.2g} s at '
+            'most in the other recordings')
     if found_s is None:
         return text
     if _decides(hole, found_s):
@@ -178,18 +158,11 @@ def _line(hole: Hole, found_s: Optional[float]) -> str:
     return f'{text}; its death is found after {found_s:.2g} s all the same, as most starts agree'
 
 
-def _silence(recording: RecordingEvents, begin: int, length: int,
-             to_the_end: bool = False) -> Silence:
-    return Silence((begin - recording.origin) / SECOND_NS, length / SECOND_NS, to_the_end)
-
-
 def _pieces(part: BagPart, silences: Sequence[Silence]) -> List[BagPart]:
     pieces = []
     for silence in sorted(silences, key=lambda each: each.begin_s):
         if silence.begin_s - (part.start or 0.0) >= _SHORTEST_PART_S:
             pieces.append(replace(part, end=silence.begin_s))
-        if silence.to_the_end:
-            return pieces
         end_s = silence.begin_s + silence.length_s
         part = replace(part, start=max(part.start or 0.0, end_s))
     if not silences or part.end is None or part.end - (part.start or 0.0) >= _SHORTEST_PART_S:

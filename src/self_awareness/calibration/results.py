@@ -7,7 +7,7 @@ from typing import Dict, List, Sequence
 import numpy as np
 
 from self_awareness import Roc
-from self_awareness.calibration import confidence
+from self_awareness.calibration import confidence, heads_and_tails
 from self_awareness.calibration.confidence import Interval
 from self_awareness.calibration.runs import ABNORMAL, NORMAL, RECORDED, JudgedRun
 from self_awareness.stamps import SECOND_NS
@@ -32,10 +32,17 @@ class FaultResult:
 
 @dataclass(frozen=True)
 class FalseAlarms:
-    """Alarms after persistence on the normal recordings."""
+    """Alarms after persistence on the normal recordings.
+
+    Args:
+        count: of them.
+        hours: of normal operation.
+        at_end: further ones, of who stopped before the recording ended: that is no false alarm.
+    """
 
     count: int
     hours: float
+    at_end: int = 0
 
     @property
     def per_hour(self) -> float:
@@ -70,7 +77,9 @@ def fault_results(normal: np.ndarray, faulty: Sequence[JudgedRun],
 def false_alarms(normal: Sequence[JudgedRun], window: int) -> FalseAlarms:
     """Count the alarms on the normal recordings; `window` [ns]."""
     windows = sum(int((run.labels == NORMAL).sum()) for run in normal)
-    return FalseAlarms(sum(len(run.verdicts.alarms) for run in normal), windows * window / _HOUR)
+    alarms = [heads_and_tails.stopped_before_end(run.run.source, alarm) is None
+              for run in normal for alarm in run.verdicts.alarms]
+    return FalseAlarms(sum(alarms), windows * window / _HOUR, len(alarms) - sum(alarms))
 
 
 def _fault_result(name: str, normal: np.ndarray, runs: Sequence[JudgedRun],

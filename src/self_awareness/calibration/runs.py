@@ -7,23 +7,26 @@ section 2.3).
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import List, Optional, Sequence, Tuple
+from dataclasses import dataclass, replace
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from self_awareness import TrainedModel, Verdicts, progress
-from self_awareness.calibration import fault_injection
-from self_awareness.calibration.fault_injection import InjectedFault
+from self_awareness.calibration import fault_injection, heads_and_tails
+from self_awareness.calibration.fault_injection import InjectedFault, of_each_source
 from self_awareness.judging import Judge
 from self_awareness.recordings import RecordingEvents, overlap
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import SECOND_NS, nanoseconds
 
 NORMAL, ABNORMAL, LEFT_OUT = 0, 1, -1
 """Labels of windows."""
 
 RECORDED = 'recorded'
 """What a fault is called that was recorded, not injected."""
+
+_BEFORE, _AFTER = 3 * SECOND_NS, 5 * SECOND_NS  # of an alarm: what led to it, and what is left
+_SHORTEST = 30 * SECOND_NS  # recording that a fault is injected into, if an excuse shortens it
 
 
 @dataclass(frozen=True)
@@ -116,6 +119,72 @@ def injected_fault(recording: RecordingEvents, fault: InjectedFault, window: int
     return run
 
 
+class Injections(NamedTuple):
+    """Faults in recordings.
+
+    Args:
+        runs: every fault in every recording that can show it.
+        silent: the faults that no recording can show.
+        excused: the recordings that are left out, as an excuse held all the time.
+    """
+
+    runs: List[Run]
+    silent: List[str]
+    excused: List[str]
+
+
+def injections(faults: Sequence[InjectedFault], trained: TrainedModel,
+               normal: Sequence[JudgedRun]) -> Injections:
+    """Return every fault in every recording, where no excuse held.
+
+    Where a fault stands for each source, those that say nothing after the middle of a recording
+    are left out: many only speak when the robot starts.
+
+    Args:
+        faults: to inject.
+        trained: the model.
+        normal: the recordings, judged.
+
+    Raises:
+        ValueError: a fault of a source that is named would change nothing.
+    """
+    parts = {str(judged.run.source.part): without_excuses(judged) for judged in normal}
+    able = [recording for recording in parts.values() if recording is not None]
+    runs: Dict[str, List[Run]] = {}
+    for each in dict.fromkeys(each for fault in faults
+                              for each in of_each_source(fault, trained.event_types)):
+        runs[str(each)] = [injected_fault(recording, each, trained.window) for recording in able
+                           if each in faults
+                           or acts_after_middle(each.source or '', recording, trained.window)]
+    return Injections([run for of_fault in runs.values() for run in of_fault],
+                      [fault for fault, of_fault in runs.items() if able and not of_fault],
+                      [part for part, recording in parts.items() if faults and recording is None])
+
+
+def without_excuses(judged: JudgedRun) -> Optional[RecordingEvents]:
+    """Return the longest part of a recording in which no excuse held: nobody is to blame where the
+    machine is busy, or all fall silent. None: it is too short.
+    """
+    source, verdicts = judged.run.source, judged.verdicts
+    excuses = sorted((alarm.begin - _BEFORE, alarm.end + _AFTER)
+                     for alarm in [*verdicts.alarms, *verdicts.suspicions]
+                     if alarm.busy is not None or alarm.silent is not None)
+    if not excuses:
+        return source
+    begins = [int(source.stamps[0]), *(end for _, end in excuses)]
+    ends = [*(begin for begin, _ in excuses), source.end]
+    length, begin = max((end - max(begins[:number]), max(begins[:number]))
+                        for number, end in enumerate(ends, 1))
+    if length < _SHORTEST:
+        return None
+    within = (source.stamps >= begin) & (source.stamps <= begin + length)
+    return replace(
+        source, part=replace(source.part, start=(begin - source.origin) / SECOND_NS,
+                             end=(begin + length - source.origin) / SECOND_NS),
+        stamps=source.stamps[within], ids=source.ids[within], end=begin + length,
+        attributes=None if source.attributes is None else source.attributes[within])
+
+
 def acts_after_middle(source: str, recording: RecordingEvents, window: int) -> bool:
     """Return whether a source has an event where a fault would be injected, or later."""
     of_source = [i for i, kind in enumerate(recording.event_types) if kind.source == source]
@@ -134,9 +203,12 @@ def judge_runs(judge: Judge, window: int, runs: Sequence[Run]) -> List[JudgedRun
     """Let a detector judge runs in windows of a length [ns]."""
     judged = []
     for run in progress.each(runs, 'scoring'):
+        source = run.source
         # Nobody knows which attributes messages would have that a fault makes late or seldom.
-        verdicts = judge(*run.events(), run.source.end, clock_steps=run.source.clock_steps,
-                         attributes=None if run.injected else run.source.attributes)
+        verdicts = judge(*run.events(), source.end, source.event_types,
+                         clock_steps=source.clock_steps, waiting=source.waiting,
+                         hosts=source.hosts, missing=source.missing,
+                         attributes=None if run.injected else source.attributes)
         judged.append(JudgedRun(run, verdicts, np.nan_to_num(verdicts.score),
                                 _labels(run, verdicts, window)))
     return judged
@@ -167,5 +239,8 @@ def _labels(run: Run, verdicts: Verdicts, window: int) -> np.ndarray:
         labels[(verdicts.start >= run.onset) & (verdicts.start + window <= run.relief)] = ABNORMAL
     else:
         labels[:] = NORMAL
+        for before_s in filter(None, (heads_and_tails.stopped_before_end(run.source, alarm)
+                                      for alarm in verdicts.alarms)):
+            labels[verdicts.start + window > run.source.end - nanoseconds(before_s)] = LEFT_OUT
     labels[verdicts.settling] = LEFT_OUT
     return labels

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import dataclasses
 import os
 import time
 from statistics import median
@@ -14,19 +13,19 @@ import numpy as np
 from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, EvidenceModel,
                             PaperCalibration, PaperModel, Roc, RocPoint, TrainedModel,
                             accepted_file)
-from self_awareness.calibration import confidence, holes, limits
-from self_awareness.calibration.fault_injection import (FORMS, InjectedFault, of_each_source,
-                                                        of_known_source)
+from self_awareness.calibration import confidence, heads_and_tails, holes, limits
+from self_awareness.calibration.fault_injection import FORMS, InjectedFault, of_known_source
 from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
                                                 fault_results, labelled)
-from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, JudgedRun, Run,
-                                             acts_after_middle, check_unseen, injected_fault,
-                                             judge_runs, normal_run, recorded_fault)
+from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, Injections,
+                                             JudgedRun, Run, check_unseen, injections, judge_runs,
+                                             normal_run, recorded_fault)
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, replacing
-from self_awareness.recordings import BagPart, RecordingEvents, by_folder, expand
+from self_awareness.parts import BagPart, Named, by_folder, look
+from self_awareness.recordings import RecordingEvents
 from self_awareness.reporting import coverage_text, csv_text, evidence_report
 from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.plots import save_roc
@@ -39,7 +38,8 @@ _EPILOG = f"""\
 Name a part of a recording as BAG@START-END, in s from its first message.
 FAULT is one of {FORMS}.
 SOURCE may be *: each source in turn. A fault hits a copy of every normal recording, in its middle,
-and only its source. In reality, those who depend on the source would stop, too.
+and only its source. In reality, those who depend on the source would stop, too. Where the machine
+was busy, or all was silent, nobody would be to blame: no fault is injected there.
 examples:
   calibrate --model robot.model --normal wednesday.bag -o robot.model
   calibrate --model robot.model --normal wednesday.bag --inject 'crash:*' starve -o robot.model
@@ -59,6 +59,7 @@ class _Measured(NamedTuple):
     faults: List[FaultResult]
     false_alarms: FalseAlarms
     by_budget: Dict[float, List[Dict[str, Any]]]
+    injected: Injections
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -67,10 +68,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _calibrate(arguments: argparse.Namespace) -> None:
-    parts = {option: expand(getattr(arguments, option)) for option in ('normal', 'faulty')}
-    if arguments.robots_by_folder:
-        parts = {option: by_folder(named) for option, named in parts.items()}
-    bags = [part.path for part in parts['normal'] + parts['faulty']]
+    normal_bags, faulty_bags = _named(arguments)
+    bags = [file for part in normal_bags.parts + faulty_bags.parts for file in part.files]
     check_outputs([(arguments.roc, PICTURE), (arguments.csv, TABLE)],
                   bags + [arguments.model, arguments.output])
     check_outputs([(arguments.output, MODEL)], bags)
@@ -83,27 +82,31 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     accepted = _accepted(arguments, trained)
     faults = [of_known_source(fault, trained.event_types) for fault in arguments.inject]
 
-    normal = [cli.read_recording('calibrate', trained, part) for part in parts['normal']]
-    faulty = [dataclasses.replace(cli.read_recording('calibrate', trained, part.whole()),
-                                  part=part)
-              for part in parts['faulty']]
+    normal = cli.read_recordings('calibrate', trained, normal_bags, arguments.skip_bad,
+                                 lambda part: part)
+    faulty = cli.read_recordings('calibrate', trained, faulty_bags, arguments.skip_bad,
+                                 BagPart.whole)
     check_unseen(trained, normal + faulty)
     normal_runs = [normal_run(recording) for recording in normal]
-    injected, silent = _inject(faults, trained, normal)
-    faulty_runs = [recorded_fault(recording, trained.window) for recording in faulty] + injected
+    recorded = [recorded_fault(recording, trained.window) for recording in faulty]
 
     if arguments.detector == 'evidence':
-        measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs, accepted)
+        measured = _find_limits(arguments, trained, parameters, normal_runs, recorded, faults,
+                                accepted)
         coverage = measured.by_budget[arguments.budget]
         evidence_report.print_verdict(trained, coverage)
+        for line in heads_and_tails.lines([(each.part, heads_and_tails.find(each))
+                                           for each in normal], 'BAG@START', 'BAG@0-END'):
+            print(line)
         _say_holes(trained, normal)
         evidence_report.print_coverage(trained, coverage)
         evidence_report.print_budgets(measured.by_budget)
         evidence_report.print_measured(measured.normal, measured.false_alarms)
         evidence_report.print_faults(measured.faulty)
-        evidence_report.print_not_tried(silent)
+        evidence_report.print_not_tried(measured.injected)
     else:
-        measured = _find_threshold(trained, parameters, arguments.cutoff, normal_runs, faulty_runs)
+        measured = _find_threshold(trained, parameters, arguments.cutoff, normal_runs, recorded,
+                                   faults)
         trained.paper_calibration = _calibration(arguments, measured)
         _print(arguments.cutoff, measured)
     if measured.faulty and measured.roc.auc < 0.5:
@@ -116,7 +119,19 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                  [(result.fault, result.roc) for result in measured.faults], measured.point)
     trained.save(arguments.output)
     _keep_accepted(arguments, trained)
+    cli.say_skipped('calibrate', normal_bags.bad + faulty_bags.bad)
     print(f'written: {arguments.output}')
+
+
+def _named(arguments: argparse.Namespace) -> List[Named]:
+    """Return the normal and the faulty recordings."""
+    both = [look(bags) for bags in (arguments.normal, arguments.faulty)]
+    cli.say_found(Named(*([each for named in both for each in getattr(named, field)]
+                          for field in ('parts', 'bad', 'told'))), arguments.skip_bad)
+    if arguments.robots_by_folder:
+        for named in both:
+            named.parts = by_folder(named.parts)
+    return both
 
 
 def _goes_elsewhere(arguments: argparse.Namespace) -> bool:
@@ -148,28 +163,6 @@ def _say_holes(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None
         cli.warn('calibrate', f'if that was a fault, leave it out: --normal {left}')
 
 
-def _inject(faults: Sequence[InjectedFault], trained: TrainedModel,
-            normal: Sequence[RecordingEvents]) -> Tuple[List[Run], List[str]]:
-    """Return every fault in every recording, and the faults that no recording can show.
-
-    Where a fault stands for each source, those that say nothing after the middle of a recording
-    are left out: many only speak when the robot starts.
-
-    Raises:
-        ValueError: a fault of a source that is named would change nothing.
-    """
-    runs: List[Run] = []
-    silent: List[str] = []
-    for each in dict.fromkeys(each for fault in faults
-                              for each in of_each_source(fault, trained.event_types)):
-        able = [recording for recording in normal if each in faults
-                or acts_after_middle(each.source or '', recording, trained.window)]
-        runs += [injected_fault(recording, each, trained.window) for recording in able]
-        if not able:
-            silent.append(str(each))
-    return runs, silent
-
-
 def _check_options(arguments: argparse.Namespace) -> None:
     if arguments.detector == 'evidence' and arguments.cutoff is not None:
         raise ValueError('--cutoff is for --detector paper; the limits of the evidence follow '
@@ -185,7 +178,8 @@ def _check_options(arguments: argparse.Namespace) -> None:
 
 def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                  parameters: DetectorParameters, normal_runs: Sequence[Run],
-                 faulty_runs: Sequence[Run], accepted: Sequence[Acceptance]) -> _Measured:
+                 recorded: Sequence[Run], faults: Sequence[InjectedFault],
+                 accepted: Sequence[Acceptance]) -> _Measured:
     try:
         budgets = [factor * arguments.budget for factor in (0.1, 10.0, 1.0)]
         found = limits.held_out(trained, [run.source for run in normal_runs],
@@ -198,23 +192,27 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
     for calibration in found:  # the last one stays
         trained.calibration = calibration
         by_budget[calibration.budget] = coverage_text.summarise(trained.coverage())
-    judged = judge_runs(evidence_judge(trained, parameters, accepted=accepted), trained.window,
-                        [*normal_runs, *faulty_runs])
-    normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
+    judge = evidence_judge(trained, parameters, accepted=accepted)
+    normal = judge_runs(judge, trained.window, normal_runs)
+    injected = injections(faults, trained, normal)
+    faulty = judge_runs(judge, trained.window, [*recorded, *injected.runs])
     normal_scores = _normal_scores(normal, faulty, parameters)
     roc = Roc(normal_scores, labelled(faulty, ABNORMAL))
     measured = _Measured(roc.at(EVIDENCE_THRESHOLD), roc, normal, faulty,
                          fault_results(normal_scores, faulty, EVIDENCE_THRESHOLD),
-                         false_alarms(normal, trained.window), by_budget)
+                         false_alarms(normal, trained.window), by_budget, injected)
     return measured
 
 
 def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutoff: ThresholdRule,
-                    normal_runs: Sequence[Run], faulty_runs: Sequence[Run]) -> _Measured:
+                    normal_runs: Sequence[Run], recorded: Sequence[Run],
+                    faults: Sequence[InjectedFault]) -> _Measured:
     model = PaperModel(trained)
-    runs = [*normal_runs, *faulty_runs]
-    scored = judge_runs(paper_judge(trained, model, None, parameters),
-                        trained.window, runs)
+    judge = paper_judge(trained, model, None, parameters)
+    scored = judge_runs(judge, trained.window, normal_runs)
+    injected = injections(faults, trained, scored)
+    runs = [*normal_runs, *recorded, *injected.runs]
+    scored += judge_runs(judge, trained.window, runs[len(normal_runs):])
     normal_scores = _normal_scores(scored[:len(normal_runs)], scored[len(normal_runs):],
                                    parameters)
     roc = Roc(normal_scores, labelled(scored[len(normal_runs):], ABNORMAL))
@@ -224,7 +222,7 @@ def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutof
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
     return _Measured(point, roc, normal, faulty,
                      fault_results(normal_scores, faulty, point.cutoff),
-                     false_alarms(normal, trained.window), {})
+                     false_alarms(normal, trained.window), {}, injected)
 
 
 def _normal_scores(normal: Sequence[JudgedRun], faulty: Sequence[JudgedRun],
@@ -349,6 +347,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('-o', '--output', required=True, metavar='MODEL',
                         help='file to write; may be the same model')
     cli.add_robots_by_folder(parser)
+    cli.add_skip_bad(parser)
     cli.add_detector_argument(parser)
     parser.add_argument('--budget', type=cli.budget, metavar='N', help='evidence: how many false '
                         f'alarms an hour you allow (default: {limits.BUDGET:g})')

@@ -7,12 +7,14 @@ import os
 import re
 import signal
 import sys
+from dataclasses import replace
 from types import FrameType
-from typing import Callable, List, Optional, Sequence, TypeVar
+from typing import Callable, Iterable, List, Optional, Sequence, TypeVar
 
 from self_awareness import (SHORTEST_WINDOW, VERSION, BagError, DetectorParameters, ModelFileError,
                             TrainedModel, UnknownEvents, printable, recordings)
-from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.parts import BadRecordingsError, BagPart, Named, look
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
 _Value = TypeVar('_Value')
@@ -62,6 +64,8 @@ def _run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], N
         return 1
     except MemoryError:
         return _fail(parser.prog, 'there is too little memory')
+    except BadRecordingsError as error:
+        return max(_fail(parser.prog, line) for line in error.lines)
     except (BagError, ModelFileError, ValueError) as error:
         return _fail(parser.prog, str(error))
     except OSError as error:
@@ -228,6 +232,82 @@ def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedM
     except ValueError as error:
         raise ValueError(f'{path}: {error}') from error
     return model
+
+
+def add_skip_bad(parser: argparse.ArgumentParser) -> None:
+    """Add the option that leaves out recordings that cannot be used."""
+    parser.add_argument('--skip-bad', action='store_true',
+                        help='leave out recordings that cannot be used, and name them; without '
+                             'this option, all of them are named and the exit code is 1')
+
+
+def look_at(bags: Iterable[BagPart], skip_bad: bool) -> Named:
+    """Look at the recordings of a command line, of which one result is made; say what they are.
+
+    Raises:
+        BadRecordingsError: one cannot be used and is not to be skipped, or none can.
+        ValueError: as look().
+    """
+    named = look(bags)
+    say_found(named, skip_bad)
+    return named
+
+
+def say_found(named: Named, skip_bad: bool) -> None:
+    """Say before the work which bags are one recording, and which ones are skipped.
+
+    Raises:
+        BadRecordingsError: one cannot be used and is not to be skipped, or none can.
+    """
+    named.check(skip_bad)
+    print_lines([*named.told, *(f'skipped: {line}' for line in named.bad)])
+
+
+def print_lines(lines: Iterable[str]) -> None:
+    """Print lines of text."""
+    for line in lines:
+        print(line)
+
+
+def say_skipped(program: str, bad: Iterable[str]) -> None:
+    """Say at the end which recordings were left out."""
+    for line in bad:
+        warn(program, f'skipped: {line}')
+
+
+def end_with(program: str, named: Named, skip_bad: bool) -> None:
+    """End a program that says something of each recording by itself: name the bad ones.
+
+    Raises:
+        BadRecordingsError: there are some, and they are not to be skipped.
+    """
+    if not skip_bad:
+        named.check()
+    say_skipped(program, named.bad)
+
+
+def read_recordings(program: str, model: TrainedModel, named: Named, skip_bad: bool,
+                    read: Callable[[BagPart], BagPart]) -> List[RecordingEvents]:
+    """Return the events of all recordings; those that turn out to be bad are added to these.
+
+    Args:
+        program: that warns.
+        model: by the encoding of which messages are events.
+        named: the recordings.
+        skip_bad: leave out those that cannot be used.
+        read: what of each is read; the events are those of the part that was named.
+
+    Raises:
+        BadRecordingsError: one cannot be used and is not to be skipped, or none can.
+    """
+    events = []
+    for part in named.parts:
+        try:
+            events.append(replace(read_recording(program, model, read(part)), part=part))
+        except (BagError, ValueError) as error:
+            named.bad.append(str(error))
+    named.check(skip_bad and bool(events))
+    return events
 
 
 def read_recording(program: str, model: TrainedModel, part: BagPart) -> RecordingEvents:

@@ -5,18 +5,19 @@ import argparse
 import os
 from typing import Optional, Sequence
 
-from self_awareness import (EncodingRules, EventLogWriter, encoding_file, progress,
-                            recordings_in_event_log, summarise_bag)
+from self_awareness import (BagError, BagSummary, EncodingRules, EventLogWriter, encoding_file,
+                            progress, summarise_bag)
 from self_awareness.commands import cli
 from self_awareness.output_files import EVENT_LOG, check_outputs, replacing
-from self_awareness.recordings import files
-from self_awareness.training.robot_graph import RobotGraph, graph_file
+from self_awareness.parts import BagPart
+from self_awareness.training.robot_graph import RobotGraph
 
 _EPILOG = """\
 An event log holds when each message came, from whom, and of which type: 4 to 6 bytes a message,
 whatever its size. train, calibrate and score read it like the bags, and give the same results.
-Each bag is a recording of its own: LOG#1, LOG#2 and so on. Keep the file NAME.graph.yaml, which
-record.launch writes, beside the bag: it says who subscribes to what.
+Each bag is a recording of its own: LOG#1, LOG#2 and so on; the bags that rosbag record --split
+made of one recording are one. Keep the file NAME.graph.yaml, which record.launch writes, beside
+the bag: it says who subscribes to what.
 example:
   convert /nfs/bags/*.bag -o robot.events.bag
 """
@@ -28,35 +29,49 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _convert(arguments: argparse.Namespace) -> None:
-    bags = [bag for path in arguments.bags for bag in files(path)]
+    named = cli.look_at(map(BagPart, arguments.bags), arguments.skip_bad)
+    bags = [file for part in named.parts for file in part.files]
     check_outputs([(arguments.output, EVENT_LOG)], [*bags, arguments.encoding])
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
     with replacing(arguments.output) as temporary:
         log = EventLogWriter(temporary, arguments.output)
-        for bag in bags:
-            _add(log, bag, encoding)
+        added = 0
+        for part in named.parts:
+            try:
+                summary = _summary(part)
+            except BagError as error:
+                named.bad.append(str(error))
+                continue
+            _add(log, part, summary, encoding)
+            added += 1
+        named.check(arguments.skip_bad and added > 0)
         log.close()
     of_bags = sum(os.path.getsize(bag) for bag in bags)
     size = os.path.getsize(arguments.output)
+    cli.say_skipped('convert', named.bad)
     print(f'written: {arguments.output}, {size / 1e6:.1f} MB of {of_bags / 1e6:.1f} MB')
 
 
-def _add(log: EventLogWriter, bag: str, encoding: Optional[EncodingRules]) -> None:
-    if recordings_in_event_log(bag) is not None:
-        raise ValueError(f'{bag}: is an event log already')
+def _summary(part: BagPart) -> BagSummary:
+    if part.recording is not None:
+        raise ValueError(f'{part.path}: is an event log already')
+    return summarise_bag(part.files)
+
+
+def _add(log: EventLogWriter, part: BagPart, summary: BagSummary,
+         encoding: Optional[EncodingRules]) -> None:
     rules = EncodingRules.defaults() if encoding is None else encoding
-    if encoding is None and not summarise_bag(bag).has_sources:
+    if encoding is None and not summary.has_sources:
         rules.source = 'none'
-        print(f'{bag}: names no senders: sources are not told apart (source: none)')
-    path = graph_file(bag)
-    graph = RobotGraph.load(path) if os.path.exists(path) else RobotGraph()
-    with progress.messages(os.path.basename(bag)) as update:
+        print(f'{part}: names no senders: sources are not told apart (source: none)')
+    graph = RobotGraph.beside(part.files)
+    with progress.messages(os.path.basename(part.path)) as update:
         try:
-            summary = log.add_bag(bag, rules, graph.publishers, graph.subscribers,
-                                  graph.hosts, update)
+            log.add_bag(part.files, rules, graph.publishers, graph.subscribers, graph.hosts,
+                        update)
         except ValueError as error:
-            raise ValueError(f'{bag}: {error}') from error
-    print(f'{bag}: {summary.messages} messages')
+            raise ValueError(f'{part}: {error}') from error
+    print(f'{part}: {summary.messages} messages')
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -68,4 +83,5 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('-o', '--output', required=True, metavar='LOG', help='file to write')
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
+    cli.add_skip_bad(parser)
     return parser

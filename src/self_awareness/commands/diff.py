@@ -9,7 +9,7 @@ from self_awareness.commands import cli
 from self_awareness.comparison.changes import compare
 from self_awareness.comparison.sides import read_sides
 from self_awareness.output_files import PAGE, check_outputs
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.reporting import diff_text
 from self_awareness.reporting.report.diff_page import save_diff
 from self_awareness.reporting.report.page import check_installed, check_name
@@ -35,7 +35,8 @@ def _diff(arguments: argparse.Namespace) -> None:
                   [BagPart.parse(name).path for name in (arguments.before, arguments.after)])
     if arguments.html is not None:
         check_installed()
-    comparison = compare(*read_sides(arguments.before, arguments.after))
+    before, after, bad = read_sides(arguments.before, arguments.after, arguments.skip_bad)
+    comparison = compare(before, after)
     if arguments.json:
         print(json.dumps(diff_text.as_values(comparison), indent=2))
     else:
@@ -43,6 +44,7 @@ def _diff(arguments: argparse.Namespace) -> None:
             print(line)
     if arguments.html is not None:
         save_diff(arguments.html, comparison)
+    cli.say_skipped('diff', bad)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -54,4 +56,5 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--json', action='store_true', help='print JSON, for programs')
     parser.add_argument('--html', type=cli.checked(check_name), metavar='FILE.html',
                         help='write a page for a browser, too')
+    cli.add_skip_bad(parser)
     return parser

@@ -1,8 +1,9 @@
-"""`rosrun self_awareness info`: shows what is in a model, an event log or a result bag."""
+"""`rosrun self_awareness info`: shows what is in a model, an event log or a folder."""
 from __future__ import annotations
 
 import argparse
 import json
+import os
 import shutil
 from collections import Counter
 from typing import Any, Dict, List, Optional, Sequence
@@ -12,10 +13,11 @@ from self_awareness import (EventType, ModelFileError, PaperModel, ResultBag, Tr
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.learning.age import age_of, logs_of
+from self_awareness.parts import BagPart, look
 from self_awareness.recordings import is_bag
 from self_awareness.reporting import age_text, histogram_text
-from self_awareness.reporting import (coverage_text, relations_text, robots_text, tuning_text,
-                                      unheard_text)
+from self_awareness.reporting import (coverage_text, recordings_text, relations_text, robots_text,
+                                      tuning_text, unheard_text)
 from self_awareness.reporting.event_log_summary import summarise_event_log
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
@@ -39,6 +41,10 @@ def _info(arguments: argparse.Namespace) -> None:
     if arguments.age is not None:
         _info_of_age(arguments)
         return
+    first = BagPart.parse(arguments.model)
+    if arguments.more or os.path.isdir(first.path) or first.last is not None:
+        _info_of_recordings(arguments)
+        return
     recordings = recordings_in_event_log(arguments.model)
     if recordings is not None:
         _info_of_log(arguments, recordings)
@@ -61,12 +67,26 @@ def _info_of_age(arguments: argparse.Namespace) -> None:
     for option, given in (('pair', arguments.pair), ('tuning', arguments.tuning)):
         if given:
             raise ValueError(f'--{option}: says nothing of an age (--age)')
-    found = age_of(arguments.model, _load(arguments.model),
-                   logs_of(arguments.model, arguments.age))
+    named = logs_of(arguments.model, arguments.age)
+    found = age_of(arguments.model, _load(arguments.model), named, arguments.skip_bad)
     if arguments.json:
         print(json.dumps(age_text.summarise(found), indent=2, allow_nan=False))
     else:
-        _print_lines(age_text.lines(found))
+        cli.print_lines([*named.told, *age_text.lines(found)])
+    cli.say_skipped('info', named.bad)
+
+
+def _info_of_recordings(arguments: argparse.Namespace) -> None:
+    for option, given in (('pair', arguments.pair), ('tuning', arguments.tuning)):
+        if given:
+            raise ValueError(f'--{option}: is for one model, not for recordings')
+    named = look(map(BagPart.parse, [arguments.model, *arguments.more]))
+    summary = recordings_text.summarise(named)
+    if arguments.json:
+        print(json.dumps(summary, indent=2))
+    else:
+        cli.print_lines([*named.told, *recordings_text.lines(summary)])
+    cli.end_with('info', named, arguments.skip_bad)
 
 
 def _load(path: str) -> TrainedModel:
@@ -288,18 +308,27 @@ def _find(event_types: Sequence[EventType], text: str) -> int:
     names = [str(kind) for kind in event_types]
     if text in names:
         return names.index(text)
-    found: List[str] = [name for name in names if text in name]
+    found: List[str] = ([name for name in names if text in name]
+                        or [name for name in names if _bare(text) in _bare(name)])
     if len(found) == 1:
         return names.index(found[0])
     problem = 'is a part of several event types' if found else 'is no event type of the model'
     raise ValueError(f"--pair: '{text}' {problem}; name one of: {'; '.join(found or names)}")
 
 
+def _bare(text: str) -> str:
+    """Return names without their first slashes, as people type them."""
+    return ' '.join(word.lstrip('/') for word in text.split(' '))
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='info', description=__doc__.split(': ', 1)[1])
     parser.add_argument('model', metavar='MODEL',
-                        help='file written by train or calibrate, an event log, or a result bag '
-                             'of score')
+                        help='file written by train or calibrate, an event log, a result bag of '
+                             'score, or a folder of recordings')
+    parser.add_argument('more', metavar='BAG', nargs='*',
+                        help='further recordings: it says which bags are one recording, and '
+                             'which cannot be used')
     how = parser.add_mutually_exclusive_group()
     how.add_argument('--json', action='store_true', help='print all but the counts, for programs')
     how.add_argument('--tuning', action='store_true',
@@ -310,4 +339,5 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--age', nargs='*', metavar='LOG',
                         help='say how far recordings of normal operation since have drifted from '
                              'what the model was learned from (default: those of MODEL.kept)')
+    cli.add_skip_bad(parser)
     return parser

@@ -10,6 +10,7 @@ import rospy
 
 from self_awareness import EncodingRules, encoding_file
 from self_awareness.calibration import limits
+from self_awareness.calibration.heads_and_tails import START_UP_S
 from self_awareness.commands import cli, ros_node
 from self_awareness.learning import programs
 from self_awareness.learning.leaving import limit_goodbye
@@ -18,7 +19,6 @@ from self_awareness.learning.recorder import RecorderCrash
 from self_awareness.output_files import MODEL, check_outputs
 
 _MONITOR = 'self_awareness_node'
-_START_UP_S = 30.0
 _START_AGAIN = 3
 
 _EPILOG = """\
@@ -96,9 +96,9 @@ def _parser() -> argparse.ArgumentParser:
                         help='of recordings to learn from, more than 0 (default: 2)')
     parser.add_argument('--logs', metavar='FOLDER',
                         help='of the event logs that are recorded (default: MODEL.logs)')
-    parser.add_argument('--start-up', type=cli.offset, default=_START_UP_S, metavar='S',
+    parser.add_argument('--start-up', type=cli.offset, default=START_UP_S, metavar='S',
                         help='leave out so much after each start of the robot, in s (default: '
-                             f'{_START_UP_S:g})')
+                             f'{START_UP_S:g})')
     parser.add_argument('--budget', type=cli.budget, default=limits.BUDGET, metavar='N',
                         help='false alarms an hour that the limits allow (default: '
                              f'{limits.BUDGET:g})')

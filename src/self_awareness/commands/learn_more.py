@@ -5,6 +5,7 @@ import argparse
 import os
 from typing import Optional, Sequence
 
+from self_awareness.calibration.heads_and_tails import START_UP_S
 from self_awareness.commands import cli
 from self_awareness.comparison.changes import compare
 from self_awareness.comparison.sides import with_recordings
@@ -12,7 +13,6 @@ from self_awareness.learning import age, more, programs
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.reporting import age_text, diff_text
 
-_START_UP_S = 30.0
 _NEW = '.new'
 
 _EPILOG = """\
@@ -37,10 +37,12 @@ def _learn_more(arguments: argparse.Namespace) -> None:
     if arguments.take and not arguments.logs and os.path.exists(new):
         _take(new, arguments.model)
         return
-    parts = age.logs_of(arguments.model, arguments.logs)
-    check_outputs([(new, MODEL)], [arguments.model, *(part.path for part in parts)])
+    named = age.logs_of(arguments.model, arguments.logs)
+    cli.say_found(named, arguments.skip_bad)
+    check_outputs([(new, MODEL)], [arguments.model, *(file for part in named.parts
+                                                      for file in part.files)])
     trained = cli.load_model(arguments.model, 'evidence')
-    found = age.age_of(arguments.model, trained, parts)
+    found = age.age_of(arguments.model, trained, named, arguments.skip_bad)
     for line in age_text.lines(found):
         print(line)
     division = more.divided(trained, found, arguments.start_up)
@@ -54,6 +56,7 @@ def _learn_more(arguments: argparse.Namespace) -> None:
     learned = list(dict.fromkeys(part.whole() for part in division.training))
     for line in diff_text.lines(compare(*with_recordings(arguments.model, 'the logs', learned))):
         print(f'  {line}')
+    cli.say_skipped('learn_more', named.bad)
     if arguments.take:
         _take(new, arguments.model)
     else:
@@ -80,9 +83,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--budget', type=cli.budget, metavar='N',
                         help='false alarms an hour that the limits allow (default: that of '
                              'MODEL)')
-    parser.add_argument('--start-up', type=cli.offset, default=_START_UP_S, metavar='S',
+    parser.add_argument('--start-up', type=cli.offset, default=START_UP_S, metavar='S',
                         help='leave out so much after each start of the robot, in s (default: '
-                             f'{_START_UP_S:g})')
+                             f'{START_UP_S:g})')
+    cli.add_skip_bad(parser)
     parser.add_argument('--take', action='store_true',
                         help='let the new model take the place of MODEL, which is kept; without '
                              'LOG, the one that is written already')

@@ -5,23 +5,26 @@ import argparse
 import csv
 import json
 import math
+from dataclasses import asdict
 from typing import Iterator, List, Optional, Sequence
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, PaperModel, Suspect,
-                            TrainedModel, Verdicts)
+from self_awareness import (EVIDENCE_THRESHOLD, Alarm, BagError, EvidenceModel, PaperModel,
+                            Suspect, TrainedModel)
 from self_awareness import accepted_file, alarms
+from self_awareness.calibration.heads_and_tails import stopped_before_end
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
                                          replacing)
-from self_awareness.recordings import (BagPart, RecordingEvents, expand, unknown_modes,
+from self_awareness.parts import BagPart, look
+from self_awareness.recordings import (RecordingEvents, in_words, unknown_modes,
                                        unknown_types)
 from self_awareness.reporting import coverage_text, csv_text
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
 from self_awareness.reporting.report import neighbours
-from self_awareness.reporting.report.incidents import as_values, incidents
+from self_awareness.reporting.report.incidents import as_values, incidents, place_of
 from self_awareness.reporting.report.intervals import intervals
 from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import check_installed, check_name, save_report
@@ -57,14 +60,17 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _score(arguments: argparse.Namespace) -> None:
-    parts = expand(arguments.bags)
+    named = look(arguments.bags)
+    if not named.parts:
+        named.check()
+    cli.print_lines(named.told)
     check_outputs([(arguments.csv, TABLE), (arguments.json, VALUES), (arguments.plot, PICTURE),
                    (arguments.report, PAGE), (arguments.result_bag, RESULT_BAG)],
-                  [part.path for part in parts] + [arguments.model])
+                  [file for part in named.parts for file in part.files] + [arguments.model])
     if arguments.report is not None:
         check_installed()
         neighbours.check_installed()
-    check_apart(arguments.result_bag, parts)
+    check_apart(arguments.result_bag, named.parts)
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
     trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)
@@ -89,28 +95,35 @@ def _score(arguments: argparse.Namespace) -> None:
     judged: List[Judged] = []
     with result_bag(arguments.result_bag, arguments.model, trained,
                     threshold is not None, coverage) as replay:
-        for part in parts:
-            recording = cli.read_recording('score', trained, part)
+        for part in named.parts:
+            try:
+                recording = cli.read_recording('score', trained, part)
+            except (BagError, ValueError) as error:
+                named.bad.append(str(error))
+                continue
             verdicts = judge(recording.stamps, recording.ids, recording.end,
                              recording.event_types, replay(recording),
                              recording.clock_steps, waiting=recording.waiting,
                              hosts=recording.hosts, missing=recording.missing,
-                             attributes=recording.attributes)
+                             attributes=recording.attributes, senders=recording.senders)
             judged.append(Judged(by, recording, verdicts))
-            _print(recording, verdicts, trained, threshold)
+            _print(judged[-1])
+        if not judged:
+            named.check()
     if arguments.csv is not None:
         _save_csv(arguments.csv, judged, threshold)
     if arguments.json is not None:
-        _save_json(arguments.json, judged, missing)
+        _save_json(arguments.json, judged, missing, named.bad)
     if arguments.plot is not None:
         save_scores(arguments.plot, [_plot(each, trained.window, threshold) for each in judged])
     if arguments.report is not None:
         save_report(arguments.report, [section(each, f'recording-{number}')
                                        for number, each in enumerate(judged, 1)])
+    cli.end_with('score', named, arguments.skip_bad)
 
 
-def _print(recording: RecordingEvents, verdicts: Verdicts, trained: TrainedModel,
-           threshold: Optional[float]) -> None:
+def _print(judged: Judged) -> None:
+    recording, verdicts, threshold = judged.recording, judged.verdicts, judged.by.threshold
     windows = len(verdicts.start)
     start, end = recording.part.span(recording.origin, recording.end)
     line = (f'{recording.part}: {(end - start) / SECOND_NS:.1f} s, '
@@ -120,10 +133,16 @@ def _print(recording: RecordingEvents, verdicts: Verdicts, trained: TrainedModel
         line += (f', {abnormal} abnormal ({abnormal / windows:.1%}; settling left out), '
                  f'alarms: {len(verdicts.alarms)}, suspicions: {len(verdicts.suspicions)}')
     print(line)
+    if recording.steps_of_the_clock:
+        print(f'  the clock was set {in_words(recording.steps_of_the_clock)}: the recording is '
+              'cut there')
     for alarm in alarms.in_order(verdicts):
         for text in _lines(recording, alarm, threshold):
             print(text)
-    _print_unknown(recording, trained)
+    if len(recording.files) > 1:
+        for incident in incidents(judged, intervals(judged), 'incident'):
+            print(f'  {incident.headline} ({place_of(judged, incident)})')
+    _print_unknown(recording, judged.by.trained)
 
 
 def _lines(recording: RecordingEvents, alarm: Alarm,
@@ -137,6 +156,9 @@ def _lines(recording: RecordingEvents, alarm: Alarm,
            f'{span(alarm.begin, alarm.end)}: '
            f'lowest score {alarm.lowest_score:.4g}, threshold {threshold:.4g}, '
            f'{alarm.evidence or "what is left of the alarm"}')
+    before_s = stopped_before_end(recording, alarm)
+    if before_s is not None:
+        yield f'    who stopped did so {before_s:.1f} s before the recording ended'
     if alarm.busy is not None:
         yield f'    {alarm.busy}'
     if alarm.silent is not None:
@@ -171,14 +193,18 @@ def _print_unknown(recording: RecordingEvents, trained: TrainedModel) -> None:
             print(f'    {name}: {-count}')
 
 
-def _save_json(path: str, judged: Sequence[Judged], missing: str) -> None:
+def _save_json(path: str, judged: Sequence[Judged], missing: str, bad: Sequence[str]) -> None:
     values = {
         'not_watched': missing or None,
+        'skipped': bad,
         'recordings': [{
             'bag': str(each.recording.part),
+            'files': [{'file': path, 'begin_s': (start - each.recording.origin) / SECOND_NS}
+                      for path, start in each.recording.files],
+            'clock_steps': [asdict(step) for step in each.recording.steps_of_the_clock],
             'alarms': [alarms.as_values(alarm, each.recording.event_types, each.recording.origin)
                        for alarm in alarms.in_order(each.verdicts)],
-            'incidents': [as_values(incident)
+            'incidents': [{**as_values(incident), 'place': place_of(each, incident) or None}
                           for incident in incidents(each, intervals(each), 'incident')],
         } for each in judged],
     }
@@ -244,5 +270,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--result-bag', metavar='FILE.bag',
                         help='write what the monitor would have published, with the times of the '
                              'recordings')
+    cli.add_skip_bad(parser)
     cli.add_detector_arguments(parser)
     return parser

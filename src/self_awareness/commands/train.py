@@ -9,13 +9,13 @@ from typing import Dict, List, Optional, Sequence
 
 from self_awareness import (BagError, EncodingRules, TrainedModel, accepted_file, encoding_file,
                             progress)
-from self_awareness.calibration import holes
+from self_awareness.calibration import heads_and_tails, holes
 from self_awareness.calibration.holes import Hole
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import MODEL, check_outputs
-from self_awareness.recordings import BagPart, by_folder, expand
+from self_awareness.parts import BagPart, by_folder
 from self_awareness.reporting import coverage_text, robots_text, unheard_text
 from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
@@ -27,7 +27,8 @@ from self_awareness.workers import Cluster, Workers, on_this_machine
 _OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding', 'rename')
 
 _EPILOG = """\
-Record all that is normal, after several starts of the robot. Leave the start-up out with --start.
+Record all that is normal, after several starts of the robot. A recording is used from where all
+have come that come all the time, within 30 s; --start leaves out more, or nothing (0).
 Name a part of a recording as BAG@START-END, in s from its first message.
 The model is the same with any --jobs, and with --scheduler.
 examples:
@@ -47,8 +48,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _train(arguments: argparse.Namespace) -> None:
-    parts = _parts(arguments)
-    bags = [part.path for part in parts]
+    named = cli.look_at(arguments.bags, arguments.skip_bad)
+    parts = _parts(arguments, named.parts)
+    bags = [file for part in parts for file in part.files]
     check_outputs([(arguments.output, MODEL)], bags + [arguments.encoding])
     base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
     # A damaged file is found before hours of work; it is read again at the end.
@@ -57,8 +59,9 @@ def _train(arguments: argparse.Namespace) -> None:
     _check_distinct(parts)
     graph = _live_graph(base) if arguments.graph else RobotGraph()  # first: counting takes long
     if arguments.scheduler:  # the workers of a cluster have working directories of their own
-        parts = [replace(part, path=os.path.abspath(part.path)) for part in parts]
-    with closing(_workers(arguments, bags)) as workers:
+        parts = [replace(part, path=os.path.abspath(part.path),
+                         more=tuple(map(os.path.abspath, part.more))) for part in parts]
+    with closing(_workers(arguments, len(parts))) as workers:
         trained = many_bags.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
         found = holes.find([(each.part, each.silences) for each in trained.trained_on])
         if found and arguments.leave_out_holes:
@@ -88,11 +91,18 @@ def _train(arguments: argparse.Namespace) -> None:
         print(f'  {line}')
     for line in robots_text.lines(robots_text.summarise(model.robots)):
         print(f'  {line}')
+    for line in trained.numbered:
+        print(line)
     for line in accepted_file.keep_what_is_left(accepted, model, arguments.output):
         print(line)
+    for line in (heads_and_tails.start_up_lines(
+            [(each.part, each.start_up) for each in trained.trained_on])
+            + heads_and_tails.lines(
+                [(each.part, each.heads_and_tails) for each in trained.trained_on],
+                '--start', '--end')):
+        print(line)
     _say_holes(found, model, arguments.leave_out_holes)
-    for bad in trained.bad:
-        cli.warn('train', f'skipped: {bad}')
+    cli.say_skipped('train', named.bad + trained.bad)
     print(f'written: {arguments.output}; next, find limits on recordings that it was not trained '
           'on (rosrun self_awareness calibrate)')
 
@@ -153,36 +163,28 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
     return counting
 
 
-def _parts(arguments: argparse.Namespace) -> List[BagPart]:
+def _parts(arguments: argparse.Namespace, named: Sequence[BagPart]) -> List[BagPart]:
     """Return what is named; --start and --end are for bags that are named without a part."""
     parts = [replace(part, start=arguments.start, end=arguments.end)
-             if part.start is None else part for part in expand(arguments.bags)]
+             if part.start is None else part for part in named]
     return by_folder(parts) if arguments.robots_by_folder else parts
 
 
-def _workers(arguments: argparse.Namespace, bags: Sequence[str]) -> Workers:
+def _workers(arguments: argparse.Namespace, recordings: int) -> Workers:
     if arguments.scheduler is not None:
         return Cluster(arguments.scheduler)
-    if not arguments.skip_bad:
-        _check_exist(bags)
-    return on_this_machine(min(arguments.jobs or _cores(), len(bags)))
-
-
-def _check_exist(paths: Sequence[str]) -> None:
-    """Find mistyped names before hours of work."""
-    for path in paths:
-        if not os.path.exists(path):
-            raise ValueError(f'{path}: no such file')
+    return on_this_machine(min(arguments.jobs or _cores(), recordings))
 
 
 def _check_distinct(parts: Sequence[BagPart]) -> None:
     known: Dict[str, List[BagPart]] = {}
     for part in parts:
-        others = known.setdefault(os.path.realpath(part.path), [])
-        for other in others:
-            if part.meets(other):
-                raise ValueError(f'{part}: the same recording as {other}; name it once')
-        others.append(part)
+        for file in part.files:
+            others = known.setdefault(os.path.realpath(file), [])
+            for other in others:
+                if part.meets(other):
+                    raise ValueError(f'{part}: the same recording as {other}; name it once')
+            others.append(part)
 
 
 def _cores() -> int:
@@ -220,7 +222,8 @@ def _parser() -> argparse.ArgumentParser:
                              'its groups. The model remembers it. May be given several times')
     parser.add_argument('--start', type=cli.offset, metavar='S',
                         help='use each recording that is named without a part from this time '
-                             'on, in s from its first message')
+                             'on, in s from its first message (default: from where all have come '
+                             f'that come all the time, at most {heads_and_tails.START_UP_S:g})')
     parser.add_argument('--end', type=cli.offset, metavar='S', help='use it up to this time')
     cli.add_robots_by_folder(parser)
     parser.add_argument('--add-to', metavar='MODEL',
@@ -230,9 +233,7 @@ def _parser() -> argparse.ArgumentParser:
                         help='leave out the times in which a component is silent for much longer '
                              'than in all other recordings. Only needed where train says that '
                              'such a silence delays finding a death')
-    parser.add_argument('--skip-bad', action='store_true',
-                        help='leave out bags that cannot be used, and name them; without this '
-                             'option, one such bag ends the program')
+    cli.add_skip_bad(parser)
     where = parser.add_argument_group('many bags').add_mutually_exclusive_group()
     where.add_argument('--jobs', type=cli.count, metavar='N',
                        help='processes to work in (default: one for each core, and never more '

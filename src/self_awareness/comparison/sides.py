@@ -5,13 +5,14 @@ import copy
 import os
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Dict, Iterable, Iterator, List, Optional, Set, Tuple
+from typing import Dict, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (EventType, EvidenceCounts, EvidenceModel, TrainedModel, Training,
-                            recordings, recordings_in_event_log)
-from self_awareness.recordings import BagPart, RecordingEvents, expand
+from self_awareness import (BagError, EventType, EvidenceCounts, EvidenceModel, TrainedModel,
+                            Training, recordings, recordings_in_event_log)
+from self_awareness.parts import BagPart, Named, look
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
 Kind = Tuple[str, str, str]
@@ -88,11 +89,19 @@ def key_of(kind: EventType) -> Kind:
     return kind.source, kind.scope, kind.type
 
 
-def read_sides(before: str, after: str) -> Tuple[Side, Side]:
+def read_sides(before: str, after: str, skip_bad: bool = False) -> Tuple[Side, Side, List[str]]:
     """Return the two sides; recordings are counted with the encoding of the model.
 
+    Args:
+        before, after: names of models, or of recordings.
+        skip_bad: leave out recordings that cannot be used.
+
+    Returns:
+        also a line for each that was left out.
+
     Raises:
-        BagError, ModelFileError: a file cannot be read.
+        BadRecordingsError: a recording cannot be used, and is not to be left out, or none can.
+        ModelFileError: a model cannot be read.
         ValueError: none is a model, or they do not count the same things.
     """
     models = [_model_of(before), _model_of(after)]
@@ -101,35 +110,39 @@ def read_sides(before: str, after: str) -> Tuple[Side, Side]:
                          'self_awareness train): it says how messages become events')
     like = next(model for model in models if model is not None)
     sides: List[Side] = []
+    bad: List[str] = []
     for name, model in zip((before, after), models):
-        sides.append(_recording_side(name, expand([BagPart.parse(name)]), like)
-                     if model is None else Side(name, model, False))
+        if model is None:
+            named = look([BagPart.parse(name)])
+            sides.append(_recording_side(name, named, like, skip_bad))
+            bad += named.bad
+        else:
+            sides.append(Side(name, model, False))
     _check(*sides)
-    return sides[0], sides[1]
+    return sides[0], sides[1], bad
 
 
-def with_recordings(path: str, name: str, parts: Iterable[BagPart]) -> Tuple[Side, Side]:
+def with_recordings(path: str, name: str, parts: List[BagPart]) -> Tuple[Side, Side]:
     """Return a model, and recordings that are called by one name, as the two sides.
 
     Raises:
-        BagError, ModelFileError: a file cannot be read.
-        ValueError: the model was not trained for the evidence detector, or knows none of a
-            recording.
+        BadRecordingsError: a recording cannot be used.
+        ModelFileError: the model cannot be read.
+        ValueError: the model was not trained for the evidence detector.
     """
     model = TrainedModel.load(path)
     try:
         model.require('evidence')
     except ValueError as error:
         raise ValueError(f'{path}: {error}') from error
-    return Side(path, model, False), _recording_side(name, parts, model)
+    return Side(path, model, False), _recording_side(name, Named(parts), model)
 
 
 def _model_of(name: str) -> Optional[TrainedModel]:
     """Return the model of a file; None: it is a recording, or a part of one."""
     part = BagPart.parse(name)
-    if (part.start is not None or part.recording is not None or os.path.isdir(part.path)
-            or recordings_in_event_log(part.path) is not None
-            or recordings.is_bag(name)):
+    if (part != BagPart(name) or os.path.isdir(name)
+            or recordings_in_event_log(name) is not None or recordings.is_bag(name)):
         return None
     model = TrainedModel.load(name)
     try:
@@ -139,17 +152,30 @@ def _model_of(name: str) -> Optional[TrainedModel]:
     return model
 
 
-def _recording_side(name: str, parts: Iterable[BagPart], like: TrainedModel) -> Side:
+def _recording_side(name: str, named: Named, like: TrainedModel, skip_bad: bool = False) -> Side:
+    """Count recordings; those that turn out to be bad are added to these.
+
+    Raises:
+        BadRecordingsError: one cannot be used, and is not to be left out, or none can.
+    """
+    named.check(skip_bad)
     training = Training(copy.copy(like.encoding), like.bin_size, like.window, like.horizon_bins,
                         True, False, like.tuning)
     ends: Dict[Kind, End] = {}
-    for part in parts:
-        recording = recordings.read(like, part)
+    counted = 0
+    for part in named.parts:
+        try:
+            recording = recordings.read(like, part)
+        except (BagError, ValueError) as error:
+            named.bad.append(str(error))
+            continue
+        counted += 1
         training.add_events(recording.event_types, recording.stamps, recording.ids,
                             recording.recording, clock_steps=recording.clock_steps)
         for kind, end in _ends(recording):
             if kind not in ends or end.silent > ends[kind].silent:
                 ends[kind] = end
+    named.check(skip_bad and counted > 0)
     return Side(name, training.model(watch=False), True, ends)
 
 

@@ -6,11 +6,12 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Dict, List, Sequence
 
-from self_awareness import (Acceptance, ComponentDrift, DetectorParameters, DriftSamples,
+from self_awareness import (Acceptance, BagError, ComponentDrift, DetectorParameters, DriftSamples,
                             EvidenceModel, Recording, TrainedModel, accepted_file, evidence_lanes,
                             recordings)
 from self_awareness.judging import evidence_judge
-from self_awareness.recordings import BagPart, RecordingEvents, expand, overlap
+from self_awareness.parts import BagPart, Named, look
+from self_awareness.recordings import RecordingEvents, overlap
 from self_awareness.stamps import SECOND_NS
 
 LEARNED, INCIDENT, SHORT = 'learned from', 'not normal', 'too short'
@@ -83,11 +84,10 @@ def kept_beside(model: str) -> str:
     return model + _KEPT
 
 
-def logs_of(model: str, named: Sequence[str]) -> List[BagPart]:
+def logs_of(model: str, named: Sequence[str]) -> Named:
     """Return the recordings that are named; without any, those that are kept beside the model.
 
     Raises:
-        BagError: a file cannot be read.
         ValueError: there is none, or a part of a recording is named.
     """
     kept = kept_beside(model)
@@ -98,19 +98,21 @@ def logs_of(model: str, named: Sequence[str]) -> List[BagPart]:
     for part in parts:
         if part.start is not None:
             raise ValueError(f'{part}: a part of a recording; name the whole one')
-    return expand(parts)
+    return look(parts)
 
 
-def age_of(path: str, trained: TrainedModel, parts: Sequence[BagPart]) -> Age:
+def age_of(path: str, trained: TrainedModel, named: Named, skip_bad: bool = False) -> Age:
     """Return what recordings say of the age of a model, which has limits.
 
     Args:
         path: of the model: what is accepted lies beside it.
         trained: the model.
-        parts: whole recordings, of one robot, that are taken for normal.
+        named: whole recordings, of one robot, that are taken for normal; those that turn out to
+            be bad are added to these.
+        skip_bad: leave them out.
 
     Raises:
-        BagError: one cannot be read.
+        BadRecordingsError: a recording cannot be used, and is not to be left out, or none can.
         ValueError: it is of another robot, or there as well twice; or the model has no limits.
     """
     trained.require('evidence')
@@ -120,12 +122,17 @@ def age_of(path: str, trained: TrainedModel, parts: Sequence[BagPart]) -> Age:
     accepted = accepted_file.beside(path)
     computed = EvidenceModel(trained)
     heard: List[Heard] = []
-    for part in parts:
-        found = _heard(trained, computed, accepted, part)
+    for part in named.parts:
+        try:
+            found = _heard(trained, computed, accepted, part)
+        except (BagError, ValueError) as error:
+            named.bad.append(str(error))
+            continue
         for other in heard:
             if overlap(found.recording, other.recording):
                 raise ValueError(f'{part}: the same recording as {other.part}; name it once')
         heard.append(found)
+    named.check(skip_bad and bool(heard))
     heard.sort(key=lambda each: each.origin)
     robots = sorted({each.recording.robot for each in heard})
     if len(robots) > 1:
@@ -164,7 +171,7 @@ def _heard(trained: TrainedModel, computed: EvidenceModel, accepted: Sequence[Ac
     verdicts = judge(events.stamps, events.ids, events.end, events.event_types,
                      clock_steps=events.clock_steps, waiting=events.waiting,
                      hosts=dict(events.hosts), missing=events.missing,
-                     attributes=events.attributes)
+                     attributes=events.attributes, senders=events.senders)
     alarms = [*verdicts.alarms, *verdicts.suspicions]
     if alarms:
         return left_out(INCIDENT, f'{alarms[0].kind} {alarms[0].culprit}'.strip())

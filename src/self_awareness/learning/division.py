@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 from typing import List, Sequence, Set
 
 from self_awareness.learning.logs import Log
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 
 _TRAINING_SHARE = 2.0 / 3.0
 _SHORTEST_CALIBRATION_S = 30  # a part of a recording, method.md, section 5.1

@@ -13,7 +13,7 @@ import rosbag
 
 from self_awareness import (BagError, EncodingRules, read_events, recordings_in_event_log,
                             summarise_bag)
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 
 _ACTIVE = '.active'

@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 import os
 import shutil
+from dataclasses import replace
 from typing import List, Sequence
 
 from self_awareness import Recording, TrainedModel, accepted_file
@@ -11,7 +12,7 @@ from self_awareness.learning.age import LEARNED, Age, Heard
 from self_awareness.learning.division import Division, divide
 from self_awareness.learning.logs import Log
 from self_awareness.output_files import replacing
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 
 _BEFORE = '.before'
@@ -50,8 +51,7 @@ def _calibrated_on(heard: Heard, trained: Sequence[Recording],
         # Whole seconds, as they are printed.
         begin = math.ceil((each.start - heard.origin) / SECOND_NS)
         end = math.floor((each.end - heard.origin) / SECOND_NS)
-        parts.append(BagPart(heard.part.path, float(begin), float(end), heard.part.recording,
-                             heard.part.alone))
+        parts.append(replace(heard.part, start=float(begin), end=float(end)))
     return parts
 
 

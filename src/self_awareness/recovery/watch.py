@@ -19,7 +19,7 @@ _ABNORMAL_S = 0.5
 
 _ERROR = 2  # of SelfAwareness
 _DIED = 'died'
-_NOBODY_IS_TO_BLAME = ('busy machine', 'all silent')
+_NOBODY_IS_TO_BLAME = ('busy machine', 'all silent', 'two senders')
 
 
 @dataclass

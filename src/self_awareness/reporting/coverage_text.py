@@ -21,7 +21,9 @@ def summarise(coverage: Sequence[Coverage]) -> List[Dict[str, Any]]:
              'watched': each.is_watched, 'death_found_after': each.death_found_after,
              'found_when_asked': each.found_when_asked, 'found_after': each.found_after,
              'late_answers': each.late_answers, 'more_starts': each.more_starts or None,
-             'late_answers_found': each.late_answers_found} for each in coverage]
+             'late_answers_found': each.late_answers_found,
+             'not_judged': [{'what': what, 'topic': topic, 'why': why}
+                            for what, topic, why in each.blind]} for each in coverage]
 
 
 def not_watched(found: Sequence[Dict[str, Any]]) -> str:
@@ -32,6 +34,17 @@ def not_watched(found: Sequence[Dict[str, Any]]) -> str:
     more = f' and {len(names) - _MOST_NAMED} more' if len(names) > _MOST_NAMED else ''
     return (f'{len(names)} of {len(found)} components are not watched: '
             f'{", ".join(names[:_MOST_NAMED])}{more}')
+
+
+def not_judged(found: Sequence[Dict[str, Any]]) -> List[str]:
+    """Return what is not judged of topics that are watched otherwise, a line for each reason."""
+    topics: Dict[Tuple[str, str], List[str]] = {}
+    for each in found:
+        for blind in each['not_judged']:
+            topics.setdefault((blind['what'], blind['why']), []).append(blind['topic'])
+    return [f'not watched: {what} of {", ".join(names[:_MOST_NAMED])}'
+            + (f' and {len(names) - _MOST_NAMED} more' if len(names) > _MOST_NAMED else '')
+            + f': {why}' for (what, why), names in topics.items()]
 
 
 def table(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[Tuple[str, ...]]:
@@ -50,7 +63,7 @@ def table(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[Tuple[str, 
 
 
 def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
-    """Return the lines of a table, a component in each, and who is not watched.
+    """Return the lines of a table, a component in each, and who and what is not watched.
 
     Args:
         found: what summarise() returned.
@@ -59,7 +72,8 @@ def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
     if not found:
         return []
     missing = not_watched(found)
-    return aligned(table(found, fewest_gaps)) + ([missing] if missing else [])
+    return (aligned(table(found, fewest_gaps)) + ([missing] if missing else [])
+            + not_judged(found))
 
 
 def _death(each: Dict[str, Any], fewest_gaps: int) -> str:

@@ -6,9 +6,9 @@ from statistics import median
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from self_awareness import HOURS_OF_ROBOTS, EvidenceModel, TrainedModel
-from self_awareness.calibration import confidence
+from self_awareness.calibration import confidence, heads_and_tails
 from self_awareness.calibration.results import FalseAlarms
-from self_awareness.calibration.runs import RECORDED, JudgedRun
+from self_awareness.calibration.runs import RECORDED, Injections, JudgedRun
 from self_awareness.reporting import coverage_text, relations_text, unheard_text
 from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.text_table import aligned
@@ -80,16 +80,20 @@ def print_budgets(by_budget: Mapping[float, Sequence[Dict[str, Any]]]) -> None:
 
 def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:
     """Print what the limits do on the recordings that they were found on."""
+    at_end = (f', and {alarms.at_end} of who stopped before a recording ended'
+              if alarms.at_end else '')
     print(f'normal operation: {alarms.hours:.3f} h (recordings: {len(normal)}), alarms: '
-          f'{alarms.count}; the limits were found on the same recordings')
+          f'{alarms.count}{at_end}; the limits were found on the same recordings')
     for run in normal:
         kinds = run.run.source.event_types
         for alarm in run.verdicts.alarms:
             suspects = [f'{kinds[suspect.id]}: {suspect.reason.words}'
                         for suspect in alarm.suspects]
             more = f' (and {len(suspects) - 1} more)' if suspects[1:] else ''
+            before_s = heads_and_tails.stopped_before_end(run.run.source, alarm)
+            end = '' if before_s is None else f', {before_s:.1f} s before the recording ended'
             print(f'  {run.run.source.part}: {_seconds(run, alarm.begin)} s: '
-                  f'{suspects[0] if suspects else "no suspect stands out"}{more}')
+                  f'{suspects[0] if suspects else "no suspect stands out"}{more}{end}')
 
 
 def print_faults(faulty: Sequence[JudgedRun]) -> None:
@@ -113,10 +117,14 @@ def print_faults(faulty: Sequence[JudgedRun]) -> None:
     print(f'found {found} of {len(faulty)} (95 %: {low:.1%} to {high:.1%})')
 
 
-def print_not_tried(faults: Sequence[str]) -> None:
-    """Print which faults no recording can show."""
-    if faults:
-        print('not tried, silent after the middle of every recording: ' + ', '.join(faults))
+def print_not_tried(injections: Injections) -> None:
+    """Print which faults no recording can show, and which recordings none."""
+    if injections.silent:
+        print('not tried, silent after the middle of every recording: '
+              + ', '.join(injections.silent))
+    if injections.excused:
+        print('no fault is injected into these, in which the machine was busy, or all was silent, '
+              'all the time: ' + ', '.join(injections.excused))
 
 
 def _names(run: JudgedRun) -> Tuple[str, str]:

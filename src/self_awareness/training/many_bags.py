@@ -14,63 +14,23 @@ from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (DEFAULT_WINDOW, BagError, BagSummary, Calibration,
-                            DetectorParameters, EncodingRules, Recording,
-                            TrainedModel, Training, Tuning, lasting_subscriptions, progress,
-                            read_events, recordings, summarise_bag)
-from self_awareness.calibration import holes, limits
+from self_awareness import (BagError, BagSummary, Calibration, DetectorParameters, EncodingRules,
+                            Recording, TrainedModel, Training, lasting_subscriptions, progress,
+                            read_events, recordings)
+from self_awareness.calibration import heads_and_tails, holes, limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
-from self_awareness.recordings import BagPart, RecordingEvents, check_windows, overlap
+from self_awareness.parts import BagPart
+from self_awareness.recordings import RecordingEvents, check_windows, overlap
 from self_awareness.stamps import SECOND_NS
-from self_awareness.training import value_classes
-from self_awareness.training.robot_graph import RobotGraph, graph_file
+from self_awareness.training import numbered_names, value_classes
+from self_awareness.training.counting import Counting
+from self_awareness.training.robot_graph import RobotGraph
 from self_awareness.workers import InProcess, Workers
 
 _MOST_EVENTS_OF_BATCH = 5_000_000
 _MOST_EVENTS = 20_000_000
 """At most so many events, of 12 bytes each, are kept for the limits; other bags are read twice."""
-
-
-@dataclass(frozen=True)
-class Counting:
-    """How bags are counted.
-
-    Args:
-        encoding: how messages become events; None: by the defaults, and without sources where no
-            bag names any.
-        bin_size: of delays [ns].
-        window: length of a window [ns].
-        horizon_bins: delays of so many bins or more share one; 0: unbounded.
-        detector: who is counted for: evidence, paper or both. The paper's counts take three
-            quarters of the time, and most of the file.
-        tuning: the numbers of the evidence detector.
-        rename: rules, after those of the encoding.
-    """
-
-    encoding: Optional[EncodingRules] = None
-    bin_size: int = 10_000_000
-    window: int = DEFAULT_WINDOW
-    horizon_bins: int = 0
-    detector: str = EVIDENCE
-    tuning: Tuning = field(default_factory=Tuning)
-    rename: Tuple[Tuple[str, str], ...] = ()
-
-    def renamed(self, encoding: EncodingRules) -> EncodingRules:
-        """Return a copy of an encoding that renames what is to be renamed, too."""
-        renamed = copy.copy(encoding)
-        renamed.rename = [*encoding.rename, *self.rename]
-        # As the renames leave it: where there are some already, it is renamed.
-        if encoding.mode is not None and self.rename and not encoding.rename:
-            topic, name = encoding.mode
-            renamed.mode = (renamed.scopes_of({topic})[topic], name)
-        return renamed
-
-    @classmethod
-    def of(cls, model: TrainedModel) -> Counting:
-        """Return how the bags of a model were counted."""
-        return cls(copy.copy(model.encoding), model.bin_size, model.window, model.horizon_bins,
-                   model.detectors, model.tuning)
 
 
 @dataclass
@@ -81,11 +41,13 @@ class Trained:
         model: of all good bags.
         trained_on: the good bags.
         bad: what is wrong with the others.
+        numbered: names that differ by a number alone, in words.
     """
 
     model: TrainedModel
     trained_on: List[TrainedOn]
     bad: List[str]
+    numbered: List[str] = field(default_factory=list)
 
 
 def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Workers] = None,
@@ -106,6 +68,8 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
             named twice, or is in the base already; some bags name senders, and some do not.
     """
     workers = workers or InProcess()
+    renames, numbered = numbered_names.of_training(counting, parts, workers, base)
+    counting = replace(counting, rename=(*counting.rename, *renames))
     if counting.encoding is not None:
         encoding = copy.copy(counting.encoding)
         encoding.classes = value_classes.learned(counting.renamed(encoding), parts, workers,
@@ -136,7 +100,7 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
         raise ValueError(f'no bag can be trained on: {total.bad[-1]}')
     if counting.detector != PAPER:
         total.model.watch()
-    return Trained(total.model, total.trained_on, total.bad)
+    return Trained(total.model, total.trained_on, total.bad, numbered)
 
 
 def preliminary_limits(trained: Trained, workers: Optional[Workers] = None) -> Calibration:
@@ -257,7 +221,7 @@ class _Sum:
         # The two bags where one names senders and the other does not: the same in any batches.
         before, after = self.trained_on[-1], other.trained_on[0]
         nameless = after if model.encoding.source == 'none' else before
-        raise ValueError(f'{nameless.part.path}: {_NAMELESS}')
+        raise ValueError(f'{nameless.part}: {_NAMELESS}')
 
 
 _NAMELESS = ('no connection of this bag names its sender, and sources are to be told apart; leave '
@@ -289,7 +253,10 @@ def _count_batch(how: _How, batch: _Batch) -> _Sum:
 def _count(how: _How, part: BagPart) -> _Sum:
     counting = how.counting
     try:
-        events, encoding, summary = _read(counting, part)
+        whole, encoding, summary = _read(counting, part)
+        begin = heads_and_tails.start_up(whole)
+        events = heads_and_tails.without(whole, begin)
+        part = events.part
         recording = Recording()
         recording.bag = events.bag
         recording.start = int(events.stamps[0])
@@ -302,7 +269,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
                             counting.detector in (EVIDENCE, BOTH),
                             counting.detector in (PAPER, BOTH), counting.tuning)
         training.add_events(events.event_types, events.stamps, events.ids,
-                            recording, _before(encoding, events), events.clock_steps,
+                            recording, _before(encoding, whole, events), events.clock_steps,
                             events.attributes)
         model = training.model(watch=False)
         graph = _graph(part, summary)
@@ -325,39 +292,43 @@ def _count(how: _How, part: BagPart) -> _Sum:
     lines += [f'{part}: warning: {reason}; it is left out' for reason in summary.left_out]
     if events.copied and encoding.source != 'none':
         lines.append(f'{part}: {_COPIED}')
-    trained_on = TrainedOn(part, events.fingerprint, events, holes.longest_silences(events))
+    trained_on = TrainedOn(part, events.fingerprint, events, holes.longest_silences(events),
+                           heads_and_tails.find(events), begin)
     return _Sum(recording.events, model, [trained_on], lines)
 
 
-def _before(encoding: EncodingRules,
+def _before(encoding: EncodingRules, whole: RecordingEvents,
             events: RecordingEvents) -> Optional[Tuple[np.ndarray, np.ndarray]]:
     """Return stamps and ids of what a bag holds before a part; None: the part is its beginning.
 
     How long a component takes to start is learned from it.
+
+    Args:
+        encoding: how messages become events.
+        whole: what was asked for.
+        events: what is left of it without the start of the robot.
     """
     if not events.part.start:
         return None
+    if not whole.part.start:
+        first = len(whole.stamps) - len(events.stamps)
+        return whole.stamps[:first], whole.ids[:first]
     part = events.part
-    read = read_events(part.path, encoding, events.event_types, None, part.start,
+    read = read_events(part.files, encoding, events.event_types, None, part.start,
                        recording=part.recording)
     return read.stamps, read.ids
 
 
 def _graph(part: BagPart, summary: BagSummary) -> RobotGraph:
-    """Return whose messages reach whom, if an event log or a file beside the bag says so."""
-    if summary.encoding is not None:
-        return RobotGraph(*summary.graph)
-    path = graph_file(part.path)
-    return RobotGraph.load(path) if os.path.exists(path) else RobotGraph()
+    """Return whose messages reach whom, if an event log or files beside the bags say so."""
+    return (RobotGraph.beside(part.files) if summary.encoding is None
+            else RobotGraph(*summary.graph))
 
 
 def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules, BagSummary]:
-    encoding = counting.encoding or EncodingRules.defaults()
-    if counting.encoding is None and part.recording is not None:
-        encoding = summarise_bag(part.path, part.recording).encoding or encoding
-    encoding = counting.renamed(encoding)
+    encoding = counting.encoding_of(part)
     with progress.messages(os.path.basename(part.path)) as update:
-        read = read_events(part.path, encoding, [], part.start, part.end, update, part.recording)
+        read = read_events(part.files, encoding, [], part.start, part.end, update, part.recording)
     if not read.summary.has_sources or len(read.stamps) == 0:
         recordings.check_kind(part.path)
     if encoding.source == 'callerid' and not read.summary.has_sources:

@@ -1,10 +1,12 @@
 """Who publishes and who subscribes to what in a robot, and the file that says so beside a bag."""
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
-from typing import Any, Dict, Set, Tuple
+from typing import Any, Dict, Iterable, Set, Tuple
 
-from self_awareness import EncodingRules, FileVersion, unheard_publications, yaml_file
+from self_awareness import (EncodingRules, FileVersion, resolved_name, unheard_publications,
+                            yaml_file)
 from self_awareness.output_files import replacing
 
 _Nodes = Dict[str, Set[str]]
@@ -89,6 +91,18 @@ class RobotGraph:
                 yaml.safe_dump(content, file, default_flow_style=None, width=1000)
 
     @classmethod
+    def beside(cls, bags: Iterable[str]) -> RobotGraph:
+        """Return what the files beside the bags of one recording say; of most, there is none.
+
+        Raises:
+            OSError, ValueError: as load().
+        """
+        graph = cls()
+        for path in filter(os.path.exists, map(graph_file, bags)):
+            graph.add(cls.load(path))
+        return graph
+
+    @classmethod
     def load(cls, path: str) -> RobotGraph:
         """Read a file of any version.
 
@@ -104,8 +118,11 @@ class RobotGraph:
         for topic, nodes in content.items():
             if newer and not str(topic).startswith('/'):
                 continue  # what this version does not know
-            graph.publishers[topic] = _nodes(path, topic, nodes, 'publishers')
-            graph.subscribers[topic] = _nodes(path, topic, nodes, 'subscribers')
+            publishers, subscribers = (_nodes(path, topic, nodes, key)
+                                       for key in ('publishers', 'subscribers'))
+            name = resolved_name(topic)
+            graph.publishers.setdefault(name, set()).update(publishers)
+            graph.subscribers.setdefault(name, set()).update(subscribers)
         return graph
 
 

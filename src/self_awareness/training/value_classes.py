@@ -8,7 +8,7 @@ from typing import Dict, List, Sequence, Tuple
 import numpy as np
 
 from self_awareness import BagError, EncodingRules, read_numbers
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.workers import Workers
 
 _MOST_OF_BAG = 100_000
@@ -57,7 +57,7 @@ def _values(how: Tuple[EncodingRules, bool], part: BagPart) -> Dict[str, np.ndar
         raise ValueError(f'{part}: an event log holds no values, from which classes are learned; '
                          'train on bags, or leave the classes out')
     try:
-        found = read_numbers(part.path, encoding, part.start, part.end)
+        found = read_numbers(part.files, encoding, part.start, part.end)
     except (BagError, ValueError) as error:
         if skip_bad:
             return {}

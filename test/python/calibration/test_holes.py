@@ -10,7 +10,8 @@ import pytest
 from self_awareness import Coverage, EventType
 from self_awareness.calibration import holes
 from self_awareness.calibration.holes import Silence
-from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.parts import BagPart
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
 GPS, SCAN = ('/gps', '/fix', 'T'), ('/laser', '/scan', 'T')
@@ -47,12 +48,9 @@ def test_the_longest_silence_of_every_type_is_known() -> None:
     assert silences[SCAN].length_s == pytest.approx(0.2, abs=1e-3)
 
 
-def test_who_dies_in_the_middle_is_silent_to_the_end() -> None:
-    silence = holes.longest_silences(recorded('a.bag', (40.0, 200.0)))[GPS]
-    assert silence.to_the_end and silence.begin_s == pytest.approx(39.8, abs=1e-3)
-    assert silence.length_s == pytest.approx(55.0, abs=0.2)
-    # What ends with the robot does not.
-    assert not holes.longest_silences(recorded('a.bag', (97.0, 200.0)))[GPS].to_the_end
+def test_what_a_recording_cuts_off_is_no_hole() -> None:
+    silences = holes.longest_silences(recorded('a.bag', (0.0, 20.0), (60.0, 200.0)))
+    assert silences[GPS].length_s == pytest.approx(0.2, abs=1e-3)
 
 
 def test_what_came_seldom_says_nothing() -> None:
@@ -79,12 +77,9 @@ def test_what_the_training_showed_is_as_good_as_other_recordings() -> None:
 
 def test_what_is_left_are_the_parts_before_and_after() -> None:
     normal = [recorded(name) for name in ('a.bag', 'b.bag')]
-    bad, dead = recorded('c.bag', (40.0, 46.0)), recorded('d.bag', (50.0, 200.0))
-    recordings = [*normal, bad]
+    recordings = [*normal, recorded('c.bag', (40.0, 46.0))]
     left = holes.without([each.part for each in recordings], found(*recordings))
     assert [str(part) for part in left] == ['a.bag', 'b.bag', 'c.bag@0-39.8', 'c.bag@46']
-    left = holes.without([dead.part], found(*normal, dead))
-    assert [str(part) for part in left] == ['d.bag@0-49.8']
 
 
 def test_several_holes_of_one_recording_leave_parts_that_do_not_meet() -> None:
@@ -93,9 +88,6 @@ def test_several_holes_of_one_recording_leave_parts_that_do_not_meet() -> None:
                 in ((GPS, 60.0, 6.0), (SCAN, 20.0, 8.0), (SCAN, 22.0, 3.0))]
     assert [str(piece) for piece in holes.without([part], holes_of)] \
         == ['a.bag@0-20', 'a.bag@28-60', 'a.bag@66']
-    dead = holes.Hole(part, GPS, Silence(90.0, 30.0, to_the_end=True), 0.2)
-    assert [str(piece) for piece in holes.without([part], [dead, *holes_of])] \
-        == ['a.bag@0-20', 'a.bag@28-60', 'a.bag@66-90']
 
 
 def test_a_line_names_who_when_where_and_the_effect() -> None:

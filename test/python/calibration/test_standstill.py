@@ -13,7 +13,7 @@ from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
 from self_awareness.commands import calibrate, train
 from self_awareness.judging import evidence_judge
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 
 LENGTH_S = 120.0

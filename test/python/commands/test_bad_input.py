@@ -55,11 +55,14 @@ def test_a_bad_bag_is_named_with_the_mend(bad_bags: Dict[str, str], model_file: 
     for program, arguments in (
             ('train', [robot_bags[0], bag, '-o', output]),
             ('calibrate', ['--model', model_file, '--normal', robot_bags[1], bag, '--inject',
-                           'starve', '-o', output]),
-            ('score', [robot_bags[1], bag, '--model', model_file, '--csv', output])):
+                           'starve', '-o', output])):
         error = error_of(program, arguments, capsys)
         assert bag in error and told in error
     assert sorted(os.listdir(tmp_path)) == before
+    error = error_of('score', [bag, robot_bags[1], '--model', model_file, '--csv', output], capsys)
+    assert bag in error and told in error
+    rows = Path(output).read_text().splitlines()[1:]  # of what is behind it
+    assert rows and all(row.startswith(robot_bags[1]) for row in rows)
 
 
 def test_a_bag_with_one_event_has_no_delay(make_bag, robot_bags, tmp_path: Path, capsys) -> None:

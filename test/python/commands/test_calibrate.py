@@ -15,7 +15,7 @@ from self_awareness import Roc, TrainedModel
 from self_awareness.calibration import confidence
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import calibrate, train
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 
 Bags = Tuple[str, str]
 

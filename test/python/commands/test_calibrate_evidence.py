@@ -14,7 +14,7 @@ from conftest import jittery_robot
 from self_awareness import EvidenceModel, TrainedModel, recordings
 from self_awareness.calibration import limits
 from self_awareness.commands import calibrate, train
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.reporting import evidence_report
 from self_awareness.stamps import SECOND_NS
 

@@ -14,7 +14,7 @@ from conftest import learned, robot
 from self_awareness import (EncodingRules, EventLogWriter, TrainedModel, read_events,
                             recordings_in_event_log, summarise_bag)
 from self_awareness.commands import calibrate, convert, diff, info, score, simulate, train
-from self_awareness.recordings import BagPart, expand
+from self_awareness.parts import BagPart, expand
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 Bags = Tuple[str, str]

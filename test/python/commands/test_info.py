@@ -147,7 +147,7 @@ def test_too_rare_is_what_has_fewer_gaps_than_the_model_asks_for(long_bags, tmp_
     assert 'not watched: 324 gaps in training, 1000 are needed' in capsys.readouterr().out
     assert as_json(capsys, str(output))['fewest_gaps'] == 1000
     assert train.main([long_bags[0], '-o', str(tmp_path / 'n')]) == 0
-    assert 'too rare to judge (fewer than 30 gaps between two of a kind)  0' in (
+    assert 'too rare to judge (fewer than 8 gaps between two of a kind)  0' in (
         capsys.readouterr().out)
 
 

@@ -10,7 +10,7 @@ from conftest import Message, jittery_robot
 from self_awareness import DetectorParameters, TrainedModel, recordings
 from self_awareness.commands import calibrate, score, train
 from self_awareness.judging import evidence_judge
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 
 LENGTH_S = 90.0

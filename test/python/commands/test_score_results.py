@@ -13,6 +13,7 @@ import pytest
 import rosbag
 from conftest import jittery_robot
 
+from self_awareness import ResultBag
 from self_awareness.commands import score
 
 STATUS, ALARM, DIAGNOSTICS = '/self_awareness/status', '/self_awareness/alarm', '/diagnostics'
@@ -227,15 +228,18 @@ def test_a_result_bag_replaces_a_result_bag_only(
         assert Path(file).read_bytes() == kept
 
 
-def test_nothing_is_left_where_a_recording_cannot_be_judged(
+def test_a_recording_that_cannot_be_judged_keeps_no_other_from_it(
         evidence_model: str, dead_laser: str, make_bag: Callable[..., str], tmp_path: Path,
         capsys) -> None:
     other = make_bag('other.bag', [(9000.0 + i, '/a', '/b') for i in range(9)])
     before = sorted(tmp_path.iterdir())
-    assert score.main([dead_laser, other, '--model', evidence_model, '--result-bag',
-                       str(tmp_path / 'out.bag')]) == 1
-    assert 'the model knows none of' in capsys.readouterr().err
+    results = tmp_path / 'out.bag'
+    assert score.main([other, '--model', evidence_model, '--result-bag', str(results)]) == 1
     assert sorted(tmp_path.iterdir()) == before
+    assert score.main([other, dead_laser, '--model', evidence_model, '--result-bag',
+                       str(results)]) == 1
+    assert 'the model knows none of' in capsys.readouterr().err
+    assert ResultBag.is_one(str(results))
 
 
 def test_without_limits_the_diagnostics_warn(

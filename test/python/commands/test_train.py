@@ -67,7 +67,7 @@ def test_types_too_rare_to_judge_are_listed(make_bag: Callable[..., str], tmp_pa
     bag = make_bag('rare.bag', sorted([*robot(10.0), (15.0, '/door', '/open'),
                                        (20.0, '/door', '/open')]))
     lines = said(capsys, [bag, '-o', str(tmp_path / 'm')])
-    assert 'too rare to judge (fewer than 30 gaps between two of a kind) 1' in lines
+    assert 'too rare to judge (fewer than 8 gaps between two of a kind) 1' in lines
     assert '/door /open std_msgs/String: 1 gap' in lines
 
 

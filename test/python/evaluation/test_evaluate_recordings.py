@@ -7,7 +7,7 @@ from typing import Any, List
 
 import pytest
 
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness_evaluation import evaluate
 from self_awareness_evaluation.recordings import outages
 from self_awareness_evaluation.recordings.outages import Case, JudgedCase, OutageRow, Span

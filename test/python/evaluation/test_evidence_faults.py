@@ -74,7 +74,6 @@ def latency(judged: Judged, onset: int) -> Optional[float]:
     # What neither silence nor timing tells; losses are not always found in the record.
     ('stale:slam', 1.7, BLIND),
     ('empty:player', 5.0, BLIND),
-    ('freeze:camera', 5.0, BLIND),
 ])
 def test_evidence_raises_the_alarm(systems: Systems, record_of: Record, kind: str,
                                    within_s: float, paper: str) -> None:

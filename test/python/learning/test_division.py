@@ -5,7 +5,7 @@ from typing import List
 
 from self_awareness.learning.division import divide
 from self_awareness.learning.logs import Log
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 
 
 def parts(lengths: List[float], starts: List[int], start_up: float = 30.0) -> List[List[str]]:

@@ -9,7 +9,7 @@ from conftest import Message, jittery_robot
 from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EvidenceModel, PaperModel,
                             TrainedModel, recordings)
 from self_awareness.judging import evidence_judge, paper_judge
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.reporting.report.judged import Judged, JudgedBy
 
 

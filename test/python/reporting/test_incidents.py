@@ -25,7 +25,7 @@ from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 def suspect(component: str, short: str = 'fell silent', silence: Optional[Silence] = None,
             kind: str = 'died', **reason: Any) -> NamedSuspect:
-    of: Any = SimpleNamespace(reason=SimpleNamespace(kind=kind, after='', **reason))
+    of: Any = SimpleNamespace(reason=SimpleNamespace(kind=kind, after='', topics=[], **reason))
     return NamedSuspect(component, f'{component} /t x/Y', short, 'why', 0.0, True, silence, of)
 
 
@@ -227,7 +227,8 @@ def test_a_flood_of_strangers_does_not_hide_who_died(evidence_model: str,
     of = judged(with_graph(evidence_model, tmp_path / 'm'), bag)
     alarm = next(each for each in incidents(of, intervals(of), 'x') if each.level == ALARM)
     assert alarm.cause == '/laser'
-    assert alarm.headline == '/laser (/scan) stopped sending at 12.0 s.'
+    assert alarm.headline == ('/laser (/scan) stopped sending at 12.0 s, 18.0 s before the '
+                              'recording ended.')
 
 
 def test_strangers_are_together_with_strangers_only() -> None:

@@ -81,6 +81,15 @@ def incidents(judged: Judged, listed: Sequence[Interval], prefix: str) -> List[I
     return [replace(each, key=f'{prefix}-{number}') for number, each in enumerate(made)]
 
 
+def place_of(judged: Judged, incident: Incident) -> str:
+    """Return in which file it began, and when there, of a recording in several; empty: in one."""
+    main = incident.main
+    silence = main.silence or (None if main.first is None else main.first.silence)
+    began = main.start if main.began is None else main.began
+    return judged.recording.place(judged.recording.origin + nanoseconds(
+        max(began if silence is None else silence.begin, 0.0)))
+
+
 def as_values(incident: Incident) -> Dict[str, Any]:
     """Return an incident as plain values; keys that end in _s count from the first message."""
     return {

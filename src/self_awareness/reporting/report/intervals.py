@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Dict, List, Optional
 
 from self_awareness import Alarm, Suspect
+from self_awareness.calibration.heads_and_tails import stopped_before_end
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.silences import Silence, silence_of, silence_of_all
 from self_awareness.stamps import moment
@@ -67,6 +68,8 @@ class Interval:
         silence: of all, or of all on some computers, where nobody was heard; None: somebody was.
         suspects: best first.
         later: suspects that were named later.
+        before_end: by how many seconds all who stopped did so before the recording ended; None:
+            nobody did, or some time before.
     """
 
     of: Alarm
@@ -82,6 +85,7 @@ class Interval:
     silence: Optional[Silence]
     suspects: List[NamedSuspect]
     later: List[NamedSuspect]
+    before_end: Optional[float] = None
 
     @property
     def named(self) -> List[NamedSuspect]:
@@ -123,7 +127,8 @@ def _interval(judged: Judged, alarm: Alarm) -> Interval:
         None if first is None else _began(first, start), alarm.lowest_score,
         alarm.evidence or 'what is left of the alarm',
         alarm.busy,
-        silence_of_all(judged, alarm) if alarm.kind == 'all silent' else None, suspects, later)
+        silence_of_all(judged, alarm) if alarm.kind == 'all silent' else None, suspects, later,
+        stopped_before_end(judged.recording, alarm))
 
 
 def _named(judged: Judged, suspect: Suspect, alarm: Alarm) -> NamedSuspect:

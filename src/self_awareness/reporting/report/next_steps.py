@@ -1,6 +1,7 @@
 """What an engineer looks at next: the log of who is to blame, and the recording at that time."""
 from __future__ import annotations
 
+import math
 import os
 import shlex
 from dataclasses import dataclass
@@ -61,16 +62,16 @@ def next_steps(judged: Judged, found: Sequence[Incident]) -> Dict[str, NextSteps
     detailed = found[:MOST_DETAILS]
     if judged.recording.part.recording is not None:  # of an event log, which holds no messages
         return {incident.key: NextSteps([], None, None) for incident in detailed}
-    path = judged.recording.part.path
     spans = {incident.key: _span(judged, incident) for incident in detailed}
     until = [(incident.cause, judged.recording.origin
               + nanoseconds(min(spans[incident.key][1], incident.main.start + _AFTER_S)))
              for incident in detailed]
-    logs = last_log_lines(path, judged.by.trained.encoding, until, MOST_LINES) if detailed else []
+    logs = (last_log_lines(judged.recording.part.files, judged.by.trained.encoding, until,
+                           MOST_LINES) if detailed else [])
     return {incident.key: NextSteps(
         [LogLine(judged.seconds(stamp), _LEVELS.get(level, str(level)), text)
          for stamp, level, text in log],
-        _play(path, *spans[incident.key]), _layout(judged, incident, *spans[incident.key]))
+        _play(judged, *spans[incident.key]), _layout(judged, incident, *spans[incident.key]))
         for incident, log in zip(detailed, logs)}
 
 
@@ -82,9 +83,19 @@ def _span(judged: Judged, incident: Incident) -> Tuple[float, float]:
                       judged.seconds(judged.recording.end))
 
 
-def _play(path: str, begin: float, end: float) -> str:
-    return (f'rosbag play -s {begin:.1f} -u {end - begin:.1f} '
-            f'{shlex.quote(os.path.abspath(path))}')
+def _files_of(judged: Judged, begin: float, end: float) -> List[Tuple[str, float]]:
+    """Return the files that hold what came between two times, and where each begins [s]."""
+    files = [(os.path.abspath(path), judged.seconds(start))
+             for path, start in judged.recording.files]
+    later = [start for _, start in files[1:]] + [math.inf]
+    return [(path, start) for (path, start), after in zip(files, later)
+            if start <= end and begin < after]
+
+
+def _play(judged: Judged, begin: float, end: float) -> str:
+    files = _files_of(judged, begin, end)
+    return (f'rosbag play -s {begin - files[0][1]:.1f} -u {end - begin:.1f} '
+            f'{" ".join(shlex.quote(path) for path, _ in files)}')
 
 
 def _layout(judged: Judged, incident: Incident, begin: float, end: float) -> str:
@@ -117,7 +128,7 @@ def _layout(judged: Judged, incident: Incident, begin: float, end: float) -> str
     ElementTree.SubElement(root, 'use_relative_time_offset', enabled='1')
     files = ElementTree.SubElement(root, 'previouslyLoaded_Datafiles')
     file = ElementTree.SubElement(files, 'fileInfo', prefix='',
-                                  filename=os.path.abspath(judged.recording.part.path))
+                                  filename=_files_of(judged, begin, end)[0][0])
     ElementTree.SubElement(file, 'selected_datasources', value=';'.join(types))
     loader = ElementTree.SubElement(file, 'plugin', ID=_LOADER)
     for name, value in _LOADER_SETTINGS.items():

@@ -6,11 +6,12 @@ from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
+from self_awareness.recordings import in_words
 from self_awareness.reporting import coverage_text, unheard_text
 from self_awareness.reporting.report import intervals
 from self_awareness.reporting.report.details import Details, details
 from self_awareness.reporting.report.headline import clock
-from self_awareness.reporting.report.incidents import Incident, incidents
+from self_awareness.reporting.report.incidents import Incident, incidents, place_of
 from self_awareness.reporting.report.intervals import ALARM, SUSPICION
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.timeline import Overview, overview
@@ -98,11 +99,14 @@ def _facts(judged: Judged) -> List[Tuple[str, str]]:
     recording, by = judged.recording, judged.by
     start, end = recording.part.span(recording.origin, recording.end)
     types = int(np.count_nonzero(np.bincount(recording.ids)))
-    return [('recorded', f'{moment(start)}, {clock((end - start) / SECOND_NS)}'),
-            ('events', f'{len(recording.stamps):,} of {types:,} event types'),
-            ('windows', f'{len(judged.verdicts.start):,} of {by.trained.window / SECOND_NS:g} s'),
-            ('model', by.model_name),
-            ('detector', 'paper' if by.evidence is None else 'evidence')]
+    facts = [('recorded', f'{moment(start)}, {clock((end - start) / SECOND_NS)}'),
+             ('events', f'{len(recording.stamps):,} of {types:,} event types'),
+             ('windows', f'{len(judged.verdicts.start):,} of {by.trained.window / SECOND_NS:g} s'),
+             ('model', by.model_name),
+             ('detector', 'paper' if by.evidence is None else 'evidence')]
+    if recording.steps_of_the_clock:
+        facts.append(('clock', f'set {in_words(recording.steps_of_the_clock)}'))
+    return facts
 
 
 def _summary(judged: Judged, happened: List[Incident]) -> Summary:
@@ -115,7 +119,11 @@ def _summary(judged: Judged, happened: List[Incident]) -> Summary:
         return Summary(QUIET, f'Nothing abnormal, but {missing}.' if missing
                        else 'Nothing abnormal.', [], None)
     worst = happened[0]
-    answers = [('When', _when(worst)), *_blamed(worst)]
+    answers = [('When', _when(worst))]
+    place = place_of(judged, worst)
+    if place:
+        answers.append(('File', place))
+    answers += _blamed(worst)
     if worst.together:
         answers.append(('At once', ', '.join(worst.together)))
     main = worst.main

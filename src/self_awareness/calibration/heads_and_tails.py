@@ -1,0 +1,187 @@
+"""Heads and tails: what a recording holds before a component's first message, and after its last.
+
+Nobody knows how long such a silence would have been, so it is no pause (docs/method.md, section
+5.2). What a recording begins with, until all have come, is the robot's start: it is left out of
+what is normal. Who falls silent shortly before the end was most likely switched off by hand.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Dict, Iterator, List, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+
+from self_awareness import Alarm, EventType
+from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.stamps import SECOND_NS
+
+START_UP_S = 30.0
+"""A start of the robot takes so long at most."""
+LAST_S = 30.0
+"""Who stops within the last seconds of a recording was most likely switched off before it."""
+
+FEWEST_GAPS = 30
+"""What came less often says nothing."""
+
+_SETTLE_S = 5.0  # the detector leaves it out, too
+_TIMES, _LEAST_S = 3.0, 1.0
+_MOST_NAMED, _MOST_LINES = 3, 10
+
+
+def component_of(event_type: EventType) -> str:
+    """Return who sends it."""
+    return event_type.source or event_type.scope
+
+
+def is_longer(silence_s: float, others_s: float) -> bool:
+    """Return whether a silence is so much longer than others that it is of another kind."""
+    return silence_s > max(_TIMES * others_s, others_s + _LEAST_S)
+
+
+def often(recording: RecordingEvents) -> Iterator[Tuple[EventType, np.ndarray]]:
+    """Return the event types with at least FEWEST_GAPS gaps, and their stamps [ns], in order."""
+    # Few bits sort several times as fast, and there are hardly ever so many event types.
+    few = len(recording.event_types) <= np.iinfo(np.uint16).max
+    order = np.argsort(recording.ids.astype(np.uint16) if few else recording.ids, kind='stable')
+    ids, stamps = recording.ids[order], recording.stamps[order]
+    firsts = np.flatnonzero(np.diff(ids, prepend=ids[:1] + 1)) if len(ids) else ids
+    for begin, end in zip(firsts, [*firsts[1:], len(ids)]):
+        if end - begin > FEWEST_GAPS:
+            yield recording.event_types[ids[begin]], stamps[begin:end]
+
+
+@dataclass(frozen=True)
+class StartUp:
+    """What a recording begins with, until all have come that come all the time.
+
+    Args:
+        seconds: from its first message, in tenths.
+        last: the component that came last.
+    """
+
+    seconds: float
+    last: str
+
+
+def start_up(recording: RecordingEvents) -> Optional[StartUp]:
+    """Return the start of the robot in a recording; None: it is a part with a begin of its own, or
+    all came within the first seconds.
+
+    Who comes later than START_UP_S, or pauses for as long later on, does not belong to it.
+    """
+    if recording.part.start is not None:
+        return None
+    heads = [((stamps[0] - recording.origin) / SECOND_NS, component_of(kind))
+             for kind, stamps in often(recording)
+             if stamps[0] - recording.origin > np.diff(stamps).max()]
+    head_s, last = max((head for head in heads if head[0] <= START_UP_S), default=(0.0, ''))
+    return StartUp(int(10.0 * head_s) / 10.0, last) if head_s > _SETTLE_S else None
+
+
+def without(recording: RecordingEvents, begin: Optional[StartUp]) -> RecordingEvents:
+    """Return what is left of a recording after the start of the robot."""
+    if begin is None:
+        return recording
+    part = replace(recording.part, start=begin.seconds)
+    first = int(np.argmax(recording.stamps >= part.span(recording.origin, recording.end)[0]))
+    attributes = recording.attributes
+    return replace(recording, part=part, stamps=recording.stamps[first:],
+                   ids=recording.ids[first:],
+                   attributes=None if attributes is None else attributes[first:])
+
+
+@dataclass(frozen=True)
+class HeadAndTail:
+    """How a recording hears a component.
+
+    Args:
+        head_s: until its first message [s].
+        tail_s: since its last one [s].
+        longest_s: its longest silence in between [s].
+    """
+
+    head_s: float
+    tail_s: float
+    longest_s: float
+
+
+HeadsAndTails = Mapping[str, HeadAndTail]
+"""By component; of what came often."""
+
+
+def find(recording: RecordingEvents) -> HeadsAndTails:
+    """Return the heads and tails of a recording, or of a part of it."""
+    found: Dict[str, HeadAndTail] = {}
+    for kind, stamps in often(recording):
+        cut = HeadAndTail(*(float(length) / SECOND_NS for length in (
+            stamps[0] - recording.stamps[0], recording.stamps[-1] - stamps[-1],
+            np.diff(stamps).max())))
+        other = found.get(component_of(kind), cut)
+        found[component_of(kind)] = HeadAndTail(min(cut.head_s, other.head_s),
+                                                min(cut.tail_s, other.tail_s),
+                                                min(cut.longest_s, other.longest_s))
+    return found
+
+
+def start_up_lines(found: Sequence[Tuple[BagPart, Optional[StartUp]]]) -> List[str]:
+    """Return what to tell of the starts of the robot that were left out.
+
+    Args:
+        found: the recordings as they were named, with their starts.
+    """
+    starts = [(each.seconds, each.last, str(part.whole()))
+              for part, each in found if each is not None]
+    if not starts:
+        return []
+    (least_s, *_), (most_s, last, part) = min(starts), max(starts)
+    seconds = f'{most_s:g} s' if least_s == most_s else f'{least_s:g} to {most_s:g} s'
+    return [f'start-up left out of {len(starts)} of {len(found)} recordings: the first {seconds}, '
+            f'until all had come that come all the time ({last} was last in {part}); '
+            '--start 0 trains on it, --start S leaves out S seconds of each']
+
+
+def lines(recordings: Sequence[Tuple[BagPart, HeadsAndTails]], start: str,
+          end: str) -> List[str]:
+    """Return a line for everybody who starts after recordings do, or ends before them.
+
+    Args:
+        recordings: with their heads and tails.
+        start, end: what leaves a head or a tail out, on the command line.
+    """
+    found = []
+    for component in sorted({name for _, of_part in recordings for name in of_part}):
+        heard = [(part, of_part[component]) for part, of_part in recordings
+                 if component in of_part]
+        longest_s = max(cut.longest_s for _, cut in heard)
+        for does, cut_s, option in (
+                ('starts after the recording does', [cut.head_s for _, cut in heard], start),
+                ('ends before the recording does', [cut.tail_s for _, cut in heard], end)):
+            named = [(length_s, str(part)) for length_s, (part, _) in zip(cut_s, heard)
+                     if is_longer(length_s, longest_s)]
+            if named:
+                parts = ', '.join(f'{part} by {length_s:.1f} s'
+                                  for length_s, part in named[:_MOST_NAMED])
+                more = (f' and {len(named) - _MOST_NAMED} more'
+                        if len(named) > _MOST_NAMED else '')
+                found.append(f'{component} {does} in {len(named)} of {len(heard)}: {parts}{more}. '
+                             f'That counts as no pause ({option} leaves it out)')
+    rest = len(found) - _MOST_LINES
+    return found[:_MOST_LINES] + ([f'and {rest} more'] if rest > 0 else [])
+
+
+def stopped_before_end(recording: RecordingEvents, alarm: Alarm) -> Optional[float]:
+    """Return by how many seconds all who stopped did so before the recording ended.
+
+    None: nobody stopped for good, or somebody did more than LAST_S before.
+    """
+    if alarm.over:
+        return None
+    if alarm.silent is not None:
+        since = [alarm.silent.since]
+    else:
+        last = {suspect: recording.stamps[recording.ids == suspect.id][-1]
+                for suspect in [*alarm.suspects, *alarm.later]
+                if suspect.reason.kind == 'died' and not suspect.reason.after}
+        since = [int(stamp) for suspect, stamp in last.items() if stamp <= suspect.since]
+    before = [(recording.end - stamp) / SECOND_NS for stamp in since]
+    return max(before) if before and max(before) <= LAST_S else None

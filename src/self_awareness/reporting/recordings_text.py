@@ -1,0 +1,39 @@
+"""What is said of recordings that are named: how long each is, and the files that it lies in."""
+from __future__ import annotations
+
+import os
+from typing import Any, Dict, List
+
+from self_awareness import BagError, summarise_bag
+from self_awareness.parts import Named
+from self_awareness.stamps import SECOND_NS, moment
+
+
+def summarise(named: Named) -> Dict[str, Any]:
+    """Return the recordings as plain values; those that turn out to be bad are added to these."""
+    found = []
+    for part in named.parts:
+        try:
+            summary = summarise_bag(part.files, part.recording)
+        except BagError as error:
+            named.bad.append(str(error))
+            continue
+        start, end = part.span(summary.start, summary.end)
+        found.append({
+            'recording': str(part), 'start_ns': start, 'duration': (end - start) / SECOND_NS,
+            'files': [{'file': path, 'begin_s': (begin - summary.start) / SECOND_NS}
+                      for path, begin in summary.files]})
+    return {'recordings': found, 'skipped': named.bad}
+
+
+def lines(summary: Dict[str, Any]) -> List[str]:
+    """Return the same in words, but for what is bad."""
+    found = summary['recordings']
+    text = [f'recordings   {len(found)}, {sum(each["duration"] for each in found):.1f} s']
+    for each in found:
+        text.append(f'    {each["recording"]}: {each["duration"]:.1f} s, '
+                    f'from {moment(each["start_ns"])}')
+        if len(each['files']) > 1:
+            text += [f'        from {file["begin_s"]:.1f} s on: {os.path.basename(file["file"])}'
+                     for file in each['files']]
+    return text
