@@ -46,7 +46,6 @@ NUMBERS = [
            _SYSTEM),
     Number('the clock of a computer drifts now and then', _SIMULATED, 'Alarms', 'ac', _SYSTEM),
     Number('stamps stand still', _SIMULATED, 'Alarms', 'stale:slam', _SYSTEM),
-    Number('an image is frozen', _SIMULATED, 'Alarms', 'freeze:camera', _SYSTEM),
     Number('false alarms an hour (95 %)', _SIMULATED, 'Targets',
            'the same, with the time before the faults', _SYSTEM),
     Number('the same, on robots of other kinds, learned from 4 starts', _FAMILIES, '', 'all',

@@ -98,6 +98,25 @@ class Timer:
 
 
 @dataclass(frozen=True)
+class TwoRates:
+    """Sends by one timer during an activity, and by another one otherwise."""
+
+    during: Timer
+    otherwise: Timer
+    activity_of_rates: str
+    activity: str = ''
+    trigger: Optional[int] = None
+
+    def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
+        """See Emission."""
+        during, otherwise = (timer.times(scene, index, heard)
+                             for timer in (self.during, self.otherwise))
+        return np.sort(np.concatenate([
+            during[scene.during(self.activity_of_rates, during)],
+            otherwise[~scene.during(self.activity_of_rates, otherwise)]]))
+
+
+@dataclass(frozen=True)
 class Answer:
     """Sends some time after a message that the component hears.
 

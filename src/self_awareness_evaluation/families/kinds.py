@@ -8,8 +8,8 @@ import numpy as np
 
 from self_awareness_evaluation.families.conditions import Activity, Conditions
 from self_awareness_evaluation.families.emissions import (Answer, Emission, Feedback, Sporadic,
-                                                          Timer)
-from self_awareness_evaluation.families.robot import Output, Robot
+                                                          Timer, TwoRates)
+from self_awareness_evaluation.families.robot import CRASH, Fault, Output, Robot
 
 RATES_HZ = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 30.0, 50.0, 100.0)
 """Usual rates."""
@@ -19,6 +19,8 @@ _FASTEST_CHAIN_HZ = 30.0
 _SHORTEST_ANSWER_S, _LONGEST_ANSWER_S = 0.003, 0.04
 _MOST_OF_PERIOD = 0.4  # an answer takes no longer, so that its component keeps up
 _COPY_S = 0.0005
+_HOLE_S = 6.0
+_HEAD_OR_TAIL_S = (6.0, 20.0)
 
 
 @dataclass(frozen=True)
@@ -151,6 +153,43 @@ def _driving_docked(seed: int) -> Robot:
     for number, rate in enumerate((5.0, 10.0)):
         draft.add_timer(f'planner{number}', rate)
         draft.add_timer(f'planner{number}', rate, 'motion', activity='driving')
+    return draft.robot(seed)
+
+
+def _rate_modes(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rng = draft.rng
+    draft.activities['driving'] = Activity(60.0, 60.0)
+    for number in range(3):
+        draft.add_timer(f'driver{number}', float(rng.choice(RATES_HZ)))
+    for number in range(int(rng.integers(10, 16))):
+        fast = float(rng.choice((20.0, 50.0)))
+        index = draft.add(f'motion{number}', 'state', 'nav_msgs/Odometry', TwoRates(
+            Timer(1.0 / fast), Timer(1.0 / float(rng.choice((1.0, 2.0)))), 'driving'))
+        draft.add_chain(f'motion_filter{number}', index, fast, number % 2)
+    return draft.robot(seed)
+
+
+def _small(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rate = float(draft.rng.choice((5.0, 10.0, 20.0, 50.0)))
+    index = draft.add_timer('driver', rate)
+    draft.add_copies(index, int(draft.rng.integers(0, 2)))
+    draft.add_chain('filter', index, rate, int(draft.rng.integers(1, 3)))
+    return draft.robot(seed)
+
+
+def _servers(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rng = draft.rng
+    for number in range(2):
+        draft.add_timer(f'driver{number}', float(rng.choice((1.0, 10.0, 50.0))))
+    for server in range(2):
+        for client in range(int(rng.integers(4, 7))):
+            name = f'client{server}_{client}'
+            asked = draft.add(name, 'request', 'std_msgs/String', Sporadic(rng.uniform(0.5, 4.0)))
+            answer = draft.add_answer(f'server{server}', asked, 0.04, f'result{client}')
+            draft.add_answer(name, answer, 0.04, 'done')
     return draft.robot(seed)
 
 
@@ -304,6 +343,18 @@ def _of_one_make(seed: int, number: Optional[int] = None) -> Robot:
     return draft.robot(seed)
 
 
+def _hole(robot: Robot, number: int, seconds: float) -> Optional[Fault]:
+    begin_s = (seconds - _HOLE_S) / 2.0
+    return Fault(CRASH, robot.regular[0], begin_s, begin_s + _HOLE_S) if number == 0 else None
+
+
+def _head_or_tail(robot: Robot, number: int, seconds: float) -> Fault:
+    length_s = float(np.random.default_rng((robot.seed, number)).uniform(*_HEAD_OR_TAIL_S))
+    source = robot.regular[number % 2]
+    return (Fault(CRASH, source, 0.0, length_s) if number % 2 == 0
+            else Fault(CRASH, source, seconds - length_s))
+
+
 @dataclass(frozen=True)
 class Family:
     """Robots of a kind.
@@ -313,7 +364,8 @@ class Family:
         draw: returns the robot of a seed.
         one_start: the recordings to learn from are all of one start.
         watched_start: and so are those that are watched; else each is of another start.
-        hole: in one of the recordings to train on, a component is silent for 6 s.
+        flaw: returns what is wrong with a recording to learn from, by the robot, the number of
+            the recording and its length [s]; None: nothing is.
         of_make: returns one of several robots of a make, by the seed and a number: each recording
             to learn from is of another one, and all that is watched of one more; None: there is
             one robot.
@@ -323,7 +375,7 @@ class Family:
     draw: Callable[[int], Robot]
     one_start: bool = False
     watched_start: bool = False
-    hole: bool = False
+    flaw: Callable[[Robot, int, float], Optional[Fault]] = lambda *_: None
     of_make: Optional[Callable[[int, int], Robot]] = None
 
 
@@ -364,7 +416,13 @@ FAMILIES: Dict[str, Family] = {
                                                           stall_s=(0.8, 1.5))),
                             one_start=True, watched_start=True),
     'hole': Family('timers; in one of the recordings to train on, a driver is silent for 6 s',
-                   _timers(), hole=True),
+                   _timers(), flaw=_hole),
+    'heads_and_tails': Family('timers; of the recordings to learn from, a driver comes late, and '
+                              'another one ends early', _timers(), flaw=_head_or_tail),
+    'rate_modes': Family('20 or 50 Hz driving, 1 or 2 Hz docked, a minute each', _rate_modes),
+    'small': Family('two to four nodes: a driver, and who answers to it', _small),
+    'servers': Family('two servers with four to six clients each that ask now and then',
+                      _servers),
     'lossy': Family('timers; 1 of 5000 messages is lost, however slowly they come',
                     _timers(conditions=Conditions(lost=2e-4, lost_however_slow=2e-4))),
     'one_make': Family('timers; robots of one make with a node of their own each: learned from '

@@ -39,7 +39,6 @@ _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and t
 
 _PAUSES = 3.0  # a recording goes on for so many of its longest pauses after who speaks seldom died
 _PAUSES_FROM_S = 3600.0  # the longest pause is that of so long a time
-_HOLE_S = 6.0
 
 _MISSING_S = 60.0  # a death is counted if the recording goes on for this long afterwards
 
@@ -146,7 +145,7 @@ class Records:
     def training(self, learning: Learning) -> List[WindowedEvents]:
         """Return the recordings to train on."""
         return [self._recorded(_TRAINING, number, learning.training_s, self._family.one_start,
-                               self._hole(number, learning.training_s))
+                               self._family.flaw(self.robot, number, learning.training_s))
                 for number in range(learning.starts)]
 
     def calibration(self, learning: Learning) -> List[WindowedEvents]:
@@ -220,14 +219,6 @@ class Records:
         if kind == RESTART:
             return RESTARTS_IN_S + AFTER_RESTART_S
         return after_death_s if kind == DEATH else AFTER_ONSET_S
-
-    def _hole(self, number: int, seconds: float) -> Optional[Fault]:
-        """Return what is wrong with a recording to train on: in one of them, the first component
-        is silent for a while."""
-        if not self._family.hole or number > 0:
-            return None
-        begin_s = (seconds - _HOLE_S) / 2.0
-        return Fault(CRASH, self.robot.regular[0], begin_s, begin_s + _HOLE_S)
 
     def _recorded(self, section: _Section, number: int, seconds: float, one_start: bool,
                   fault: Optional[Fault] = None) -> WindowedEvents:

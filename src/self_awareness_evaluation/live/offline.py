@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Dict, List, Optional
 
 from self_awareness import TrainedModel, recordings
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness_evaluation import catalogue
 from self_awareness_evaluation.live.samples import Sample, measure_alarms
 from self_awareness_evaluation.live.session import Session

@@ -15,7 +15,8 @@ import numpy as np
 from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, PaperModel, Roc,
                             TrainedModel, Tuning, recordings)
 from self_awareness.judging import BOTH, Judge, evidence_judge, paper_judge
-from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.parts import BagPart
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
