@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "channel_case.h"
 #include "core/evidence/channel/delays.h"
+#include "self_awareness/core/evidence/limits/coverage.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -55,6 +58,22 @@ TEST(OwnGapsOfSlowTimersTest, NeedNoMoreGapsThanToMeasureWhatTheySay) {
   const auto fewest = static_cast<int>(Tuning{}.fewest_gaps);
   EXPECT_FALSE(isWatched(Model(slow(fewest - 1)).tracks(), kOwnGaps, kA, kA));
   EXPECT_TRUE(isWatched(Model(slow(fewest)).tracks(), kOwnGaps, kA, kA));
+}
+
+TEST_F(OwnGapsTest, ASumThatReachedItsCapHasNoLimit) {
+  // As of a robot that sends at other rates in other modes: nobody knows how far it would grow.
+  const Expectation& expected = model_->expectation(gaps_);
+  EXPECT_EQ(expected.limit(gaps_, DelaySum::kMost - 1, 300), 300);
+  EXPECT_TRUE(std::isnan(expected.limit(gaps_, DelaySum::kMost, 300)));
+  const Limits limits{std::vector<double>(model_->tracks().size(), std::nan("")), {}};
+  const std::vector<Coverage> coverage = coverageOf(*model_, limits, {}, kWindow, false);
+  ASSERT_EQ(coverage[model_->componentIndex(kA)].blind.size(), 1U);
+  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].about, "pace");
+  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].topic, kTypes[kA].scope);
+}
+
+TEST_F(OwnGapsTest, HaveAtLeastTwiceWhatWasSeen) {
+  EXPECT_EQ(OwnGaps().margins(Tuning{}).least, 2);
 }
 
 TEST_F(OwnGapsTest, CountFromTheFirstOneOn) {
