@@ -13,7 +13,7 @@ from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
 
 from self_awareness import EncodingRules, EvidenceModel, TrainedModel, read_events
-from self_awareness.commands import calibrate, convert, score
+from self_awareness.commands import calibrate, convert, score, train
 
 FAULT_S = 60.0
 LENGTH_S = 120.0
@@ -74,20 +74,21 @@ def _write(bag: rosbag.Bag, source: str, topic: str, message: Any, stamp: float)
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with a model of the robot."""
     path = tmp_path_factory.mktemp('attributes')
-    bags = [record(path / f'{number}.bag', 10000.0 * (number + 1), number) for number in range(4)]
+    bags = [record(path / f'{number}.bag', 10000.0 * (number + 1), number) for number in range(5)]
+    assert train.main([*bags[:4], '-o', str(path / 'robot.model')]) == 0
     # Contents that change for minutes change always, so that recordings may be short.
-    model = train_tuned(bags[:3], path / 'robot.model', changing_time=60.0)
-    assert calibrate.main(['--model', model, '--normal', bags[3], '-o', model]) == 0
+    model = train_tuned(bags[:4], path / 'frozen.model', changing_time=60.0)
+    assert calibrate.main(['--model', model, '--normal', bags[4], '-o', model]) == 0
     return path
 
 
-def alarms(folder: Path, recording: str) -> List[Any]:
+def alarms(folder: Path, recording: str, model: str = 'robot') -> List[Any]:
     from self_awareness import load
-    return list(load(str(folder / 'robot.model')).judge(recording))
+    return list(load(str(folder / f'{model}.model')).judge(recording))
 
 
 def test_the_channels_watch_where_training_says_what_is_usual(folder: Path) -> None:
-    model = TrainedModel.load(str(folder / 'robot.model'))
+    model = TrainedModel.load(str(folder / 'frozen.model'))
     watched = {(track.name, model.event_types[track.to_id].source)
                for track in EvidenceModel(model).tracks}
     assert {('age', '/lidar'), ('lost', '/lidar'), ('size', '/lidar'),
@@ -103,7 +104,8 @@ def test_a_fault_is_found_in_bag_and_log(folder: Path, channel: str) -> None:
     bag = record(folder / f'{channel}.bag', 90000.0, 9, change=FAULTS[channel])
     log = str(folder / f'{channel}.events.bag')
     assert convert.main([bag, '-o', log]) == 0
-    found = [alarms(folder, recording) for recording in (bag, log)]
+    model = 'frozen' if channel == 'frozen' else 'robot'
+    found = [alarms(folder, recording, model) for recording in (bag, log)]
     assert [each.begin for each in found[0]] == [each.begin for each in found[1]]
     first = found[0][0]
     assert first.evidence == channel
