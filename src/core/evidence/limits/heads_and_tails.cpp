@@ -37,27 +37,24 @@ bool isOftenSilent(const Statistics& counts, EventId id, const Tuning& tuning) {
   return talks < kTalks * HeardIn(counts, id).length;
 }
 
-double headsAndTails(const Statistics& counts, EventId id, const Tuning& tuning) {
-  if (!isOftenSilent(counts, id, tuning)) {
-    return 0;
-  }
+HeadsAndTails::HeadsAndTails(const Statistics& counts, EventId id, const Tuning& tuning)
+    : id_(id), count_(isOftenSilent(counts, id, tuning)) {
   const HeardIn heard_in(counts, id);
+  if (!count_ || heard_in.number == 0) {
+    return;
+  }
   const Statistics::Type& type = counts.type(id);
   const double usual = 2 * heard_in.number * tuning.regular * type.meanGap();
-  return std::max(heard_in.length - static_cast<double>(type.gap_sum) - usual, 0.0);
+  all_ = std::max(heard_in.length - static_cast<double>(type.gap_sum) - usual, 0.0);
+  tail_ = static_cast<std::int64_t>((all_ - heard_in.heads) / heard_in.number);
 }
 
-std::int64_t headOrTail(const Statistics& counts, const Statistics::Recording& recording,
-                        EventId id, const Tuning& tuning) {
-  if (!isOftenSilent(counts, id, tuning)) {
+std::int64_t HeadsAndTails::longestIn(const Statistics::Recording& recording) const {
+  if (!count_) {
     return 0;
   }
-  if (!isHeardIn(recording, id)) {
-    return recording.end - recording.start;
-  }
-  const HeardIn heard_in(counts, id);
-  const double tails = headsAndTails(counts, id, tuning) - heard_in.heads;
-  return std::max(recording.firsts[id], static_cast<std::int64_t>(tails / heard_in.number));
+  return isHeardIn(recording, id_) ? std::max(recording.firsts[id_], tail_)
+                                   : recording.end - recording.start;
 }
 
 }  // namespace self_awareness::core::evidence

@@ -20,13 +20,25 @@ inline bool isHeardIn(const Statistics::Recording& recording, EventId id) {
 /// Whether a type is silent for more than a quarter of the time of the recordings that hear it.
 bool isOftenSilent(const Statistics& counts, EventId id, const Tuning& tuning);
 
-/// Length of all pauses that these recordings cut off [ns]; 0 of who is not often silent.
-double headsAndTails(const Statistics& counts, EventId id, const Tuning& tuning);
+/// What the recordings of the training cut off of an event type.
+class HeadsAndTails {
+ public:
+  HeadsAndTails(const Statistics& counts, EventId id, const Tuning& tuning);
 
-/// The longest that a recording of the training cuts off [ns]: the time until the first event of
-/// the type, or, as only their sum is known, the mean of those since the last one; all of it where
-/// the type did not come. 0 of who is not often silent.
-std::int64_t headOrTail(const Statistics& counts, const Statistics::Recording& recording,
-                        EventId id, const Tuning& tuning);
+  /// Whether they count: the type is often silent.
+  bool count() const { return count_; }
+  /// Length of all of them [ns]; 0 where they do not count.
+  double all() const { return all_; }
+  /// The longest of a recording [ns]: the time until the first event of the type, or, as only
+  /// their sum is known, the mean of those since the last one; all of it where the type did not
+  /// come. 0 where they do not count.
+  std::int64_t longestIn(const Statistics::Recording& recording) const;
+
+ private:
+  EventId id_;
+  bool count_;
+  double all_ = 0;         // [ns]
+  std::int64_t tail_ = 0;  // mean [ns]
+};
 
 }  // namespace self_awareness::core::evidence

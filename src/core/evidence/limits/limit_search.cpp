@@ -172,18 +172,16 @@ std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t 
 }
 
 std::vector<double> LimitSearch::gapsOf(EventId id) const {
+  const HeadsAndTails cut_off(model_.statistics(), id, tuning_);
   std::vector<double> longest;
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
     const std::int64_t gap = isHeardIn(recording, id) ? recording.longest_gaps[id] : 0;
-    const std::int64_t cut_off = robots_.lacks(recording.robot, id)
-                                     ? 0
-                                     : headOrTail(model_.statistics(), recording, id, tuning_);
-    longest.push_back(asTold(std::max(gap, cut_off)));
+    const bool lacks = robots_.lacks(recording.robot, id);
+    longest.push_back(asTold(std::max(gap, lacks ? 0 : cut_off.longestIn(recording))));
   }
   for (const GapPart& part : gap_parts_) {
     const bool never = !part.of->firsts.empty() && part.of->firsts[id] < 0 &&
-                       !robots_.lacks(part.of->robot, id) &&
-                       isOftenSilent(model_.statistics(), id, tuning_);
+                       !robots_.lacks(part.of->robot, id) && cut_off.count();
     longest.push_back(asTold(never ? part.of->end - part.of->start : part.said->longest_gaps[id]));
   }
   return longest;
@@ -357,7 +355,7 @@ GapTail LimitSearch::tailOf(Statistics::Type gaps, std::size_t track, double sta
   gaps.longest_gaps.resize(
       std::min(gaps.longest_gaps.size(), static_cast<std::size_t>(tuning_.pauses)));
   const double usual = tuning_.regular * model_.meanGap(id);
-  const double cut_off = headsAndTails(model_.statistics(), id, tuning_);
+  const double cut_off = HeadsAndTails(model_.statistics(), id, tuning_).all();
   return {gaps.longest_gaps, sumOf(with_gaps_), usual, cut_off, starts, tuning_.prior_pauses};
 }
 
