@@ -14,7 +14,7 @@ HOUR = 3600 * SECOND
 PART = 30 * SECOND
 LEAST_MARGIN = {'deadlines': 2.0, 'company': 2.0, 'own gaps': 2.0}
 """By pool; 1.25 elsewhere."""
-MOST_MARGIN = 4.0
+MOST_MARGIN = 2.0
 MOST_GAP_MARGIN = 1.6
 MOST_OWN_MARGIN = 2.0
 MOST_TAIL_MARGIN = {False: 2.0, True: 8.0}
