@@ -102,7 +102,6 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
                             (others > 0 ? ", and of " + std::to_string(others) + " more" : ""));
   }
   tellUnheard(state.unheard, state.communication.lists, status);
-  tellStrangers(state.strangers_closed, state.strangers_newly_closed, status);
   status.add("events a second", number(heard.rate));
   status.add("dropped messages", heard.dropped);
   status.add("subscriptions", state.subscriptions);

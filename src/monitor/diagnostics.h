@@ -27,8 +27,6 @@ struct MonitorState {
   bool full_of_unknown = false;     ///< further unknown event types are not told apart
   bool master_answers = true;
   std::vector<ros1::Unheard> unheard;       ///< publishers that the master names
-  std::size_t strangers_closed = 0;         ///< connections, since the start
-  std::size_t strangers_newly_closed = 0;   ///< since the last report
   std::int64_t ros_now = 0;                 ///< [ns]
   std::int64_t clock_stands_still_for = 0;  ///< [ns of steady time]
   std::string clock_rivals;                 ///< who publishes /clock, if several do

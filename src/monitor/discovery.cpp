@@ -1,15 +1,12 @@
 #include "discovery.h"
 
-#include <ros/connection_manager.h>
 #include <ros/console.h>
 #include <ros/this_node.h>
-#include <ros/xmlrpc_manager.h>
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "ros/now.h"
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness {
@@ -17,10 +14,6 @@ namespace {
 
 // A master that takes longer than this to answer all that it is asked hangs.
 constexpr std::chrono::seconds kPatience(5);
-// At who calls this node.
-constexpr std::chrono::duration<double> kBetweenLooks(0.1);
-// Who calls this node all the time must not have the master asked all the time.
-constexpr std::int64_t kBetweenCalls = core::kNanosecondsPerSecond / 5;
 
 // Topics that are subscribed to stay: the first by name may be anybody's.
 std::size_t leaveOutMost(const std::set<std::string>& model_topics,
@@ -90,15 +83,12 @@ ros1::Listening publishersOf(const std::set<std::string>& topics,
 
 }  // namespace
 
-Discovery::Discovery(ros1::Arrivals& arrivals, const ros1::ReadLimits& limits,
-                     ros1::SubscribePolicy policy, double interval,
+Discovery::Discovery(ros1::Arrivals& arrivals, ros1::SubscribePolicy policy, double interval,
                      std::vector<std::string> services)
     : policy_(policy),
       interval_(interval),
       registration_(std::move(services)),
-      subscriptions_(arrivals, limits),
-      slave_port_(static_cast<int>(ros::XMLRPCManager::instance()->getServerPort())),
-      data_port_(static_cast<int>(ros::ConnectionManager::instance()->getTCPPort())),
+      subscriptions_(arrivals),
       thread_([this] { run(); }) {}
 
 Discovery::~Discovery() {
@@ -128,49 +118,28 @@ Discovery::State Discovery::state() const {
 void Discovery::run() {
   while (const std::optional<Wanted> next = awaitPoll()) {
     poll(*next);
-    shared_.lock()->asked_at.reset();
   }
 }
 
 std::optional<Discovery::Wanted> Discovery::awaitPoll() {
-  const auto due = std::chrono::steady_clock::now() + interval_;
-  while (true) {
-    auto shared = shared_.lock();
-    const std::chrono::duration<double> left = due - std::chrono::steady_clock::now();
-    shared.waitFor(wake_, std::min(left, kBetweenLooks),
-                   [](const Shared& now) { return now.stopping || now.poll_now; });
-    if (shared->stopping) {
-      return std::nullopt;
-    }
-    if (shared->poll_now || left <= kBetweenLooks) {
-      shared->poll_now = false;
-      shared->asked_at = std::chrono::steady_clock::now();
-      return shared->wanted;
-    }
-    shared.release();
-    lookAtStrangers();
+  auto shared = shared_.lock();
+  shared.waitFor(wake_, interval_, [](const Shared& now) { return now.stopping || now.poll_now; });
+  if (shared->stopping) {
+    return std::nullopt;
   }
-}
-
-void Discovery::lookAtStrangers() {
-  const std::int64_t now = steadyNow();
-  const ros1::Strangers::Seen seen = strangers_.look(now, slave_port_, data_port_);
-  called_ = called_ || seen.called;
-  const auto shared = shared_.lock();
-  shared->state.strangers_closed += seen.closed;
-  shared->poll_now = shared->poll_now || (called_ && now >= polled_at_ + kBetweenCalls);
+  shared->poll_now = false;
+  shared->asked_at = std::chrono::steady_clock::now();
+  return shared->wanted;
 }
 
 void Discovery::poll(const Wanted& wanted) {
   using ros1::MasterRegistration;
-  polled_at_ = steadyNow();
-  lookAtStrangers();  // this poll answers what it sees
-  called_ = false;
   State state;
   const MasterRegistration::Master master = registration_.check();
   const bool restarted = master == MasterRegistration::Master::kRestarted;
   std::optional<ros1::SystemState> known = ros1::fetchSystemState();
   state.master_answers = master != MasterRegistration::Master::kAway && known;
+  shared_.lock()->asked_at.reset();
   if (state.master_answers) {
     nameIllegal(wanted, known->graph);
     listen(wanted, *known, restarted, state);
@@ -178,7 +147,6 @@ void Discovery::poll(const Wanted& wanted) {
   }
   const auto shared = shared_.lock();
   state.master_restarts = shared->state.master_restarts + (restarted ? 1 : 0);
-  state.strangers_closed = shared->state.strangers_closed;
   if (!state.master_answers) {
     state.subscriptions = shared->state.subscriptions;
     state.left_out = shared->state.left_out;
@@ -208,7 +176,7 @@ void Discovery::listen(const Wanted& wanted, ros1::SystemState& known, bool mast
   state.left_out = leaveOutMost(of_model, topics_, topics);
   topics_ = topics;
   state.subscriptions = topics.size();
-  const std::size_t vanished = registration_.keep(known, topics);
+  const std::size_t vanished = registration_.keep(known);
   if (master_restarted) {
     ROS_WARN("the master was restarted: registered all topics and services again");
   } else if (vanished > 0) {

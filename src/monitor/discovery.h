@@ -13,22 +13,17 @@
 
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/guarded.h"
 #include "self_awareness/ros/live/arrivals.h"
-#include "self_awareness/ros/live/guarded.h"
 #include "self_awareness/ros/live/master_registration.h"
-#include "self_awareness/ros/live/named_once.h"
-#include "self_awareness/ros/live/read_limits.h"
-#include "self_awareness/ros/live/strangers.h"
 #include "self_awareness/ros/live/subscriptions.h"
+#include "self_awareness/ros/named_once.h"
 
 namespace self_awareness {
 
 /// Polls the master in a thread of its own, on steady time, and keeps what is listened to as the
 /// master says: who publishes where, and what the master knows of this node. All calls that may
 /// block on the network are made here.
-///
-/// The master tells news by the slave API. roscpp has nothing to do with it, since it does not
-/// know these subscriptions; but where the slave API is called, the master is asked at once.
 ///
 /// What the thread shares with others is in Shared; the rest is the thread's own.
 class Discovery {
@@ -47,19 +42,16 @@ class Discovery {
     std::size_t subscriptions = 0;
     std::size_t left_out = 0;         ///< topics beyond kMostOthers
     std::size_t master_restarts = 0;  ///< that were noticed
-    /// Connections to this node that said too little or too much.
-    std::size_t strangers_closed = 0;
     /// Who publishes and subscribes what; none before the first answer of the master, the last one
     /// while it does not answer.
     std::shared_ptr<const ros1::Graph> graph;
   };
 
   /// @param arrivals where messages of what is chosen go; must outlive this
-  /// @param limits of what is kept of messages
   /// @param interval between polls [s]
   /// @param services full names of services to register again after a restart of the master
-  Discovery(ros1::Arrivals& arrivals, const ros1::ReadLimits& limits, ros1::SubscribePolicy policy,
-            double interval, std::vector<std::string> services);
+  Discovery(ros1::Arrivals& arrivals, ros1::SubscribePolicy policy, double interval,
+            std::vector<std::string> services);
   /// Ends the thread and the subscriptions; waits for a call to the master that is under way.
   ~Discovery();
   Discovery(const Discovery&) = delete;
@@ -75,7 +67,7 @@ class Discovery {
   struct Shared {
     Wanted wanted;
     State state;
-    /// While polling: since when.
+    /// While the master is asked: since when.
     std::optional<std::chrono::steady_clock::time_point> asked_at;
     bool poll_now = true;
     bool stopping = false;
@@ -88,9 +80,6 @@ class Discovery {
   /// Brings what is listened to up to date, and says how much it is, and on which computers it is
   /// sent.
   void listen(const Wanted& wanted, ros1::SystemState& known, bool master_restarted, State& state);
-  /// Closes connections of strangers that take too much; asks for a poll where the master may have
-  /// told something.
-  void lookAtStrangers();
   /// Says which topics are left out, since nobody can subscribe to them.
   void nameIllegal(const Wanted& wanted, const ros1::Graph& graph);
 
@@ -98,12 +87,6 @@ class Discovery {
   const std::chrono::duration<double> interval_;
   ros1::MasterRegistration registration_;
   ros1::Subscriptions subscriptions_;
-  ros1::Strangers strangers_;
-  // Asked for while roscpp runs: once it ends, it knows its ports no more.
-  const int slave_port_;
-  const int data_port_;
-  bool called_ = false;         // by a stranger, since the last poll
-  std::int64_t polled_at_ = 0;  // steady time [ns]
   ros1::NamedOnce illegal_;
   std::set<std::string> topics_;  // that are subscribed to
 

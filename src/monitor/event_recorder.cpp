@@ -52,7 +52,6 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
       reader.seconds("poll_interval", parameters.live.poll_interval, {0.01, 3600});
   parameters.live.queue_size = static_cast<std::uint32_t>(reader.wholeNumber(
       "queue_size", static_cast<int>(parameters.live.queue_size), {1, 1000000}));
-  parameters.live.read_limits = loadReadLimits(reader);
   reader.expectNamespace("encoding");
   parameters.encoding = loadEncoding(private_node_handle);
   parameters.live.diagnostic_period =
@@ -263,12 +262,7 @@ void EventRecorder::onReport() {
                             " event types: further ones are not told apart");
   }
   tellClock(live_->clock().standsStillFor(), rosNow(), status);
-  const Discovery::State discovered = live_->discovery().state();
   tellUnheard(live_->discovery().unheard(), ros1::ListsAre::kTold, status);
-  tellStrangers(
-      discovered.strangers_closed,
-      discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed),
-      status);
   status.add("file", file_ ? file_->log.path() : "none");
   status.add("files before", files_);
   status.add("events", events_);

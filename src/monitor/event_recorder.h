@@ -42,8 +42,7 @@ namespace self_awareness {
 ///   robots (docs/fleet.md). Empty: the recordings do not say it.
 /// - `~diagnostics` (string; default: /diagnostics): topic of its status. If /diagnostics were
 ///   remapped, the recorder would not hear what the robot says there.
-/// - `~poll_interval`, `~queue_size`, `~max_message`, `~max_unfinished`, `~diagnostic_period`: as
-///   those of the monitor.
+/// - `~poll_interval`, `~queue_size`, `~diagnostic_period`: as those of the monitor.
 ///
 /// **Published topics**
 /// - `/diagnostics`, or `~diagnostics`: one status, an error while nothing can be recorded.
@@ -124,7 +123,6 @@ class EventRecorder : public NodeProgram, public LiveSource::Listener {
   std::uint64_t events_ = 0;                  // since the start of the node
   std::uint64_t bytes_ = 0;                   // of the files that are complete
   std::size_t files_ = 0;                     // that are complete
-  std::size_t strangers_closed_ = 0;          // connections, that were reported
   std::unique_ptr<LiveSource> live_;          // last: its listener uses all of the above
 };
 

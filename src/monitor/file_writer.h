@@ -10,7 +10,7 @@
 #include <string>
 #include <thread>
 
-#include "self_awareness/ros/live/guarded.h"
+#include "self_awareness/ros/guarded.h"
 
 namespace self_awareness {
 

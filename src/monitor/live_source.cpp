@@ -14,8 +14,8 @@ LiveSource::LiveSource(ros::CallbackQueue& queue, const ros::NodeHandle& node_ha
       reported_at_(steadyNow()),
       timer_(node_handle.createSteadyTimer(tick_, &LiveSource::onTick, this)),
       live_events_(node_handle, parameters.queue_size, handlers()),
-      discovery_(live_events_.arrivals(), parameters.read_limits, parameters.subscribe,
-                 parameters.poll_interval, std::move(services)),
+      discovery_(live_events_.arrivals(), parameters.subscribe, parameters.poll_interval,
+                 std::move(services)),
       spinner_(1, &queue) {}
 
 ros1::LiveEvents::Handlers LiveSource::handlers() {

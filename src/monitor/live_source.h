@@ -14,15 +14,14 @@
 #include "clock_contest.h"
 #include "discovery.h"
 #include "processor_watch.h"
+#include "self_awareness/core/stream/clock_watch.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
-#include "self_awareness/ros/live/clock_watch.h"
 #include "self_awareness/ros/live/live_events.h"
-#include "self_awareness/ros/live/own_output.h"
-#include "self_awareness/ros/live/read_limits.h"
+#include "self_awareness/ros/own_output.h"
 
 namespace self_awareness {
 
@@ -32,7 +31,6 @@ struct LiveParameters {
   double poll_interval = 1.0;       ///< ~poll_interval: of the master [s]
   std::uint32_t queue_size = 1000;  ///< ~queue_size: messages a connection may have waiting
   double diagnostic_period = 1.0;   ///< ~diagnostic_period: between two reports [s]
-  ros1::ReadLimits read_limits;     ///< ~max_message, ~max_unfinished [MB]
 };
 
 /// Messages that came before a window's end may wait for this long when it is closed [ns].
@@ -107,7 +105,7 @@ class LiveSource {
 
   /// Who talks to whom; none: not known yet, since what is wanted was set.
   const std::shared_ptr<const ros1::Graph>& graph() const { return graph_; }
-  const ros1::ClockWatch& clock() const { return clock_watch_; }
+  const core::ClockWatch& clock() const { return clock_watch_; }
   /// ROS time, or what counts in its place while several nodes set it [ns].
   std::int64_t now() const;
   /// Who publishes /clock, if several do; else empty.
@@ -128,7 +126,7 @@ class LiveSource {
   ros::WallDuration tick_ = Wanted().tick;
   ros::SteadyTimer timer_;
   ClockContest contest_;
-  ros1::ClockWatch clock_watch_;
+  core::ClockWatch clock_watch_;
   ProcessorWatch processor_watch_;
   std::shared_ptr<const ros1::Encoder> encoder_;  // none: nothing is wanted yet
   std::shared_ptr<const ros1::Graph> graph_;      // the newest that was taken over

@@ -7,7 +7,7 @@
 
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/verdict/suspect.h"
-#include "self_awareness/ros/live/arrivals.h"
+#include "self_awareness/ros/live/live_events.h"
 
 namespace self_awareness {
 

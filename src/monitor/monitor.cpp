@@ -13,6 +13,7 @@
 #include "ros/now.h"
 #include "ros/text.h"
 #include "ros/verdict/standing_alarm.h"
+#include "self_awareness/Components.h"
 #include "self_awareness/Incidents.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/stream/event.h"
@@ -71,6 +72,8 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
       private_node_handle_.advertise<self_awareness::SelfAwareness>("alarm", 10, true);
   incidents_publisher_ =
       private_node_handle_.advertise<self_awareness::Incidents>("incidents", 10, true);
+  components_publisher_ =
+      private_node_handle_.advertise<self_awareness::Components>("components", 1, true);
   services_ = {private_node_handle_.advertiseService("reset", &Monitor::onReset, this),
                private_node_handle_.advertiseService("clear", &Monitor::onClear, this),
                private_node_handle_.advertiseService("dump", &Monitor::onDump, this),
@@ -160,6 +163,7 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
   wanted.hold = std::llround((parameters_.live.poll_interval + kToBeKnown) * 1e9);
   wanted.tick = ros::WallDuration(core::toSeconds(wanted.window) / kTicksPerWindow);
   live_->setWanted(std::move(wanted));
+  started_at_ = steadyNow();
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
            session_->types().size(), heard_.components(),
            session_->calibrated() ? "calibrated" : "not calibrated, it will never alarm");

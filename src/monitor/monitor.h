@@ -68,10 +68,6 @@ namespace self_awareness {
 ///   master about who publishes and who listens (steady time).
 /// - `~queue_size` (int, messages; default: 1000; 1 to 1000000): how many of a
 ///   publisher may wait on a topic; what comes then is dropped, and counted in the diagnostics.
-/// - `~max_message` (int, MB; default: 100; 1 to 1000): longest message whose content is kept,
-///   where the model needs it; a longer one is heard, not read, and counts as dropped.
-/// - `~max_unfinished` (int, MB; default: 400; 1 to 10000): most for such messages of all
-///   publishers together, while they come.
 /// - `~source_diagnostics` (bool; default: true): one status for every source of the model.
 /// - `~hardware_id` (string; default: none): of the diagnostics.
 /// - `~recorder/duration` (double, s; default: 300.0; 0 to 86400): the flight recorder keeps the
@@ -105,6 +101,8 @@ namespace self_awareness {
 /// - `~alarm` (self_awareness/SelfAwareness): latched; each change of the level.
 /// - `~incidents` (self_awareness/Incidents): latched; the last incidents, whenever one is opened,
 ///   has grown, or is over.
+/// - `~components` (self_awareness/Components): latched, at most once a second; how every node of
+///   the graph is, and whether it is watched, for programs.
 /// - `/diagnostics` (diagnostic_msgs/DiagnosticArray): one status for the whole, one for every
 ///   source, one for the monitor itself.
 ///
@@ -216,6 +214,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   ros::Publisher status_publisher_;
   ros::Publisher alarm_publisher_;
   ros::Publisher incidents_publisher_;
+  ros::Publisher components_publisher_;
   std::vector<ros::ServiceServer> services_;
   Diagnostics diagnostics_;
 
@@ -226,8 +225,9 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   OperatorCalls calls_;
   MuteCalls mutes_;
   AcceptCalls accepts_;
-  std::size_t strangers_closed_ = 0;  // that were reported
-  std::int64_t longest_pause_ = 0;    // of this program, since the last report [ns of steady time]
+  std::int64_t started_at_ = 0;     // when the model began to judge [ns of steady time]
+  std::int64_t components_at_ = 0;  // they were published last [ns of steady time]
+  std::int64_t longest_pause_ = 0;  // of this program, since the last report [ns of steady time]
   ros1::Announcer announcer_;
   ros1::HeardTally heard_;
   FlightRecorder recorder_;

@@ -1,10 +1,14 @@
+#include <cmath>
 #include <ctime>
 #include <utility>
 
 #include "monitor.h"
 #include "not_heard.h"
+#include "nothing_heard.h"
 #include "ros/now.h"
+#include "ros/verdict/components.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness {
 
@@ -43,6 +47,14 @@ void Monitor::onReport() {
   }
   state.communication.take(announcer_.alarm(), heard_.report(moment, live_->events().dropped()),
                            moment.ros);
+  const bool deaf =
+      state.communication.heard.known_types + state.communication.heard.unknown_types == 0;
+  const std::int64_t waited = moment.steady - started_at_;
+  if (session_ && deaf && waited >= kNothingHeard) {
+    state.communication.nothing_heard =
+        "nothing has been heard for " + ros1::number(std::floor(core::toSeconds(waited))) +
+        " s: " + whyNothingIsHeard(live_->graph().get(), *session_->encoder());
+  }
   state.subscriptions = discovered.subscriptions;
   state.connections = live_->events().connections();
   state.left_out_topics = discovered.left_out;
@@ -52,9 +64,6 @@ void Monitor::onReport() {
   state.clock_stands_still_for = live_->clock().standsStillFor();
   state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
   state.master_answers = discovered.master_answers;
-  state.strangers_closed = discovered.strangers_closed;
-  state.strangers_newly_closed =
-      discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed);
   state.taken_back = calls_.onRecord();
   state.mutes = mutes_.inWords();
   state.communication.muted = mutes_.ofWhatStands();
@@ -78,6 +87,14 @@ void Monitor::onReport() {
   }
   if (kept_logs_.enabled()) {
     state.kept_logs = kept_logs_.report();
+  }
+  if (session_ && moment.steady - components_at_ >= core::kNanosecondsPerSecond) {
+    components_at_ = moment.steady;
+    self_awareness::Components components =
+        ros1::toComponents(state.communication, live_->graph().get(), *session_->encoder());
+    components.header.stamp = ros1::toRosTime(moment.ros);
+    components.mutes = state.mutes;
+    components_publisher_.publish(components);
   }
   diagnostics_.publish(std::move(state));
 }

@@ -64,17 +64,6 @@ void tellUnheard(const std::vector<ros1::Unheard>& unheard, ros1::ListsAre lists
   ros1::tellNumbered("not heard", words, lists, status);
 }
 
-void tellStrangers(std::size_t closed, std::size_t newly,
-                   diagnostic_updater::DiagnosticStatusWrapper& status) {
-  if (newly > 0) {
-    status.mergeSummary(
-        diagnostic_msgs::DiagnosticStatus::WARN,
-        std::to_string(newly) +
-            " connections to this node were closed: they sent nothing that ROS knows");
-  }
-  status.add("connections of strangers closed", closed);
-}
-
 void NotHeard::set(const std::vector<ros1::Unheard>& unheard, const ros1::Encoder& encoder) {
   why_.clear();
   for (const ros1::Unheard& each : unheard) {

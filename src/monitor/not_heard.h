@@ -30,12 +30,6 @@ std::vector<std::string> inWords(const std::vector<ros1::Unheard>& unheard);
 void tellUnheard(const std::vector<ros1::Unheard>& unheard, ros1::ListsAre lists,
                  diagnostic_updater::DiagnosticStatusWrapper& status);
 
-/// Adds how many connections of strangers were closed: a warning, where there are new ones.
-/// @param closed since the start
-/// @param newly since the last report
-void tellStrangers(std::size_t closed, std::size_t newly,
-                   diagnostic_updater::DiagnosticStatusWrapper& status);
-
 /// Keeps apart who is silent and who the monitor cannot hear: where the network between them is
 /// gone, or the publisher does not let the monitor in, nothing is known of who does not come.
 ///

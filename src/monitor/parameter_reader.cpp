@@ -161,16 +161,4 @@ void ParameterReader::warnOfUnknown() const {
   }
 }
 
-ros1::ReadLimits loadReadLimits(ParameterReader& reader) {
-  constexpr std::size_t kMegabyte = 1000000;
-  ros1::ReadLimits limits;
-  limits.message =
-      kMegabyte * static_cast<std::size_t>(reader.wholeNumber(
-                      "max_message", static_cast<int>(limits.message / kMegabyte), {1, 1000}));
-  limits.together = kMegabyte * static_cast<std::size_t>(reader.wholeNumber(
-                                    "max_unfinished",
-                                    static_cast<int>(limits.together / kMegabyte), {1, 10000}));
-  return limits;
-}
-
 }  // namespace self_awareness

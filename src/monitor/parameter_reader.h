@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "self_awareness/ros/live/read_limits.h"
-
 namespace self_awareness {
 
 /// Reads parameters of one namespace, logs them, and remembers which. All functions that read
@@ -71,8 +69,5 @@ class ParameterReader {
   std::set<std::string> known_;
   std::set<std::string> spaces_;
 };
-
-/// Reads ~max_message and ~max_unfinished.
-ros1::ReadLimits loadReadLimits(ParameterReader& reader);
 
 }  // namespace self_awareness

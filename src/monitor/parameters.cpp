@@ -58,7 +58,6 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
       reader.seconds("poll_interval", defaults.live.poll_interval, {0.01, kHour});
   parameters.live.queue_size = static_cast<std::uint32_t>(
       reader.wholeNumber("queue_size", static_cast<int>(defaults.live.queue_size), {1, 1000000}));
-  parameters.live.read_limits = loadReadLimits(reader);
   parameters.source_diagnostics = reader.flag("source_diagnostics", defaults.source_diagnostics);
   parameters.hardware_id = reader.text("hardware_id", defaults.hardware_id);
   RecorderParameters& recorder = parameters.recorder;

@@ -13,7 +13,7 @@
 #include <exception>
 #include <thread>
 
-#include "self_awareness/ros/live/guarded.h"
+#include "self_awareness/ros/guarded.h"
 
 namespace self_awareness {
 namespace {

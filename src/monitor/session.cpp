@@ -168,12 +168,13 @@ std::string Session::sourceAndTopic(core::EventId id) const {
   return ros1::withSource(type.source, type.scope);
 }
 
-std::vector<std::string> Session::strangers() const {
-  std::vector<std::string> words;
+std::vector<ros1::CommunicationState::Stranger> Session::strangers() const {
+  std::vector<ros1::CommunicationState::Stranger> strangers;
   for (const auto& [id, events] : detector_.unknown()) {
-    words.push_back(sourceAndTopic(id) + ": " + std::to_string(events));
+    const core::EventType& type = vocabulary_->at(id);
+    strangers.push_back({type.source, type.scope, events});
   }
-  return words;
+  return strangers;
 }
 
 std::vector<std::string> Session::disarmed() const {

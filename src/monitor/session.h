@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "parameters.h"
+#include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/evidence/limits/coverage.h"
@@ -20,8 +21,8 @@
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/live_events.h"
-#include "self_awareness/ros/live/own_output.h"
 #include "self_awareness/ros/model/model_file.h"
+#include "self_awareness/ros/own_output.h"
 
 namespace self_awareness {
 
@@ -82,9 +83,9 @@ class Session {
   /// Event types of the model that this publisher sends.
   std::vector<core::EventId> typesOf(const ros1::Publication& publication) const;
 
-  /// Who sends what training never saw, where, and how often since the start, in words; without
-  /// what is accepted.
-  std::vector<std::string> strangers() const;
+  /// Who sends what training never saw, where, and how often since the start; without what is
+  /// accepted.
+  std::vector<ros1::CommunicationState::Stranger> strangers() const;
 
   /// Whose delays are not watched now, and after whom, in words.
   std::vector<std::string> disarmed() const;

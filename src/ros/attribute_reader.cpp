@@ -100,11 +100,23 @@ core::Attributes AttributeReader::end(std::int64_t now) {
   }
   attributes.size = core::sizeClass(size_);
   const std::uint64_t content = size_ - content_;
-  attributes.same = last_content_ == content && sample_ == last_sample_;
+  attributes.same = last_same_ = last_content_ == content && sample_ == last_sample_;
   last_content_ = content;
   sample_.swap(last_sample_);
   if (has_header_ && position_ >= kHeader) {
     readHeader(now, attributes);
+  }
+  return attributes;
+}
+
+core::Attributes AttributeReader::skip(std::uint64_t size) {
+  core::Attributes attributes;
+  if (is_read_) {
+    attributes.size = core::sizeClass(size);
+    attributes.same = last_same_;
+    if (last_number_) {
+      ++*last_number_;
+    }
   }
   return attributes;
 }

@@ -76,11 +76,10 @@ class DiscoveryTest : public testing::Test {
     wanted_.encoder = std::make_shared<ros1::Encoder>(
         ros1::EncodingRules(), [](const core::EventType& /*type*/) { return 0; });
   }
-  /// @param interval [s]; by default, so long that nothing is polled unless there is news
-  std::unique_ptr<Discovery> discover(double interval = 3600) {
-    auto discovery =
-        std::make_unique<Discovery>(arrivals_, ros1::ReadLimits(), ros1::SubscribePolicy::kModel,
-                                    interval, std::vector<std::string>());
+  /// @param interval between polls [s]
+  std::unique_ptr<Discovery> discover(double interval = 0.1) {
+    auto discovery = std::make_unique<Discovery>(arrivals_, ros1::SubscribePolicy::kModel,
+                                                 interval, std::vector<std::string>());
     discovery->setWanted(wanted_);
     return discovery;
   }
@@ -153,17 +152,8 @@ TEST_F(DiscoveryTest, KeepsTheNewestGraph) {
   EXPECT_TRUE(knows(*discovery, "/a"));
 }
 
-TEST_F(DiscoveryTest, PollsAtOnceWhenItsSlaveApiIsCalled) {
+TEST_F(DiscoveryTest, WhomAForgedUpdateDisconnectsIsHeardAgain) {
   const auto discovery = discover();
-  ASSERT_TRUE(await([&] { return discovery->state().subscriptions == 2; }));
-  ASSERT_TRUE(await([&] { return masterKnows(1, "/b"); }));
-  const ros::Publisher publisher = publish("/b");  // the master calls
-  EXPECT_TRUE(await([&] { return knows(*discovery, "/b"); }));
-  EXPECT_TRUE(hears(publisher));
-}
-
-TEST_F(DiscoveryTest, AForgedUpdateDisconnectsNobody) {
-  const auto discovery = discover(0.1);
   const ros::Publisher publisher = publish("/a");
   ASSERT_TRUE(await([&] { return publisher.getNumSubscribers() == 1; }));
   std::string host;
@@ -176,12 +166,12 @@ TEST_F(DiscoveryTest, AForgedUpdateDisconnectsNobody) {
   request[2].setSize(0);
   XmlRpc::XmlRpcValue response;
   ASSERT_TRUE(slave.execute("publisherUpdate", request, response));
-  EXPECT_EQ(publisher.getNumSubscribers(), 1U);
   EXPECT_TRUE(hears(publisher));
+  EXPECT_EQ(whyUnheard(*discovery, ros::this_node::getName()), "");
 }
 
 TEST_F(DiscoveryTest, WhatTheMasterForgetsIsRegisteredAgain) {
-  const auto discovery = discover(0.1);
+  const auto discovery = discover();
   const ros::Publisher publisher = publish("/a");
   ASSERT_TRUE(await([&] { return masterKnows(1, "/a"); }));
   tellMaster("unregisterSubscriber", {ros::this_node::getName(), "/a", ownUri()});
@@ -191,7 +181,7 @@ TEST_F(DiscoveryTest, WhatTheMasterForgetsIsRegisteredAgain) {
 }
 
 TEST_F(DiscoveryTest, TakesItsRegistrationsBack) {
-  auto discovery = discover(0.1);
+  auto discovery = discover();
   ASSERT_TRUE(await([&] { return masterKnows(1, "/a") && masterKnows(1, "/b"); }));
   wanted_.model_topics = {"/b"};
   discovery->setWanted(wanted_);
@@ -202,11 +192,8 @@ TEST_F(DiscoveryTest, TakesItsRegistrationsBack) {
 }
 
 TEST_F(DiscoveryTest, NamesWhoCannotBeReachedAndHearsTheOthersAtOnce) {
-#ifdef __SANITIZE_THREAD__
-  GTEST_SKIP() << "ThreadSanitizer does not know the threads of getaddrinfo_a(), and dies in them";
-#endif
   std::vector<std::unique_ptr<MadeUpPublisher>> unreachable;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 8; ++i) {
     const std::string number = std::to_string(i);
     unreachable.push_back(std::make_unique<MadeUpPublisher>(
         "/lost_" + number, "/a", "http://no-such-host-" + number + ".invalid:1/"));
@@ -214,15 +201,17 @@ TEST_F(DiscoveryTest, NamesWhoCannotBeReachedAndHearsTheOthersAtOnce) {
   const MadeUpPublisher refused("/refused", "/a", "http://127.0.0.1:9/");
   const MadeUpPublisher senseless("/senseless", "/a", "http://senseless");
   const ros::Publisher publisher = publish("/a");
-  const auto discovery = discover(0.1);
-  EXPECT_TRUE(hears(publisher));
-  EXPECT_TRUE(await([&] { return discovery->unheard().size() == 302; }, kAtOnce));
-  EXPECT_NE(whyUnheard(*discovery, "/lost_7").find("no-such-host-7.invalid"), std::string::npos);
-  EXPECT_EQ(whyUnheard(*discovery, "/refused"), "nobody listens at its address");
-  EXPECT_NE(whyUnheard(*discovery, "/senseless"), "");
+  const auto discovery = discover();
+  EXPECT_TRUE(hears(publisher, 20)) << "roscpp looks up one host after the other";
+  EXPECT_TRUE(await([&] { return discovery->unheard().size() == 10; }));
+  EXPECT_TRUE(await([&] {
+    return whyUnheard(*discovery, "/lost_7") == "nobody knows its host no-such-host-7.invalid" &&
+           whyUnheard(*discovery, "/refused") == "nobody listens at its address" &&
+           whyUnheard(*discovery, "/senseless") == "its address is none";
+  }));
   EXPECT_EQ(whyUnheard(*discovery, ros::this_node::getName()), "");
   unreachable.clear();
-  EXPECT_TRUE(await([&] { return discovery->unheard().size() == 2; }, kAtOnce));
+  EXPECT_TRUE(await([&] { return discovery->unheard().size() == 2; }));
 }
 
 }  // namespace

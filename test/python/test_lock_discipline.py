@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
-GUARDED = ROOT / 'include/self_awareness/ros/live/guarded.h'
+GUARDED = ROOT / 'include/self_awareness/ros/guarded.h'
 PROGRAM = """
-#include "self_awareness/ros/live/guarded.h"
+#include "self_awareness/ros/guarded.h"
 struct Counts {{ int dropped = 0; }};
 void use(self_awareness::ros1::Guarded<Counts>& counts,
          const self_awareness::ros1::Guarded<Counts>& constant) {{

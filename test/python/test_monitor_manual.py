@@ -53,8 +53,6 @@ def _entries(manual: str) -> Dict[str, Entry]:
 def _readings() -> Dict[str, Reading]:
     code = (ROOT / 'src/monitor/parameters.cpp').read_text()
     code = code[code.index('MonitorParameters::load'):]
-    shared = (ROOT / 'src/monitor/parameter_reader.cpp').read_text()
-    code += shared[shared.index('loadReadLimits'):]
     found = re.findall(r'reader\.(\w+)(?:<[^>]*>)?\(\s*"([\w/]+)"(.*?)\);', code, re.DOTALL)
     return {name: Reading(how, arguments) for how, name, arguments in found}
 

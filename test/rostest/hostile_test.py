@@ -1,14 +1,8 @@
 #!/usr/bin/python3
 """The monitor in a system of ROS 1 that is broken, or means ill."""
 
-import os
-import socket
-import struct
 import subprocess
-import time
-from contextlib import ExitStack
-from typing import Any, List
-from urllib.parse import urlsplit
+from typing import Any
 from xmlrpc.client import ServerProxy
 
 import rosgraph
@@ -17,12 +11,11 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 from roscpp.srv import GetLoggers, SetLoggerLevel
 
-from fake_publisher import FakePublisher, string_header
-from live_system import MonitorListener, Process, again_if_disturbed, await_condition, pid_of
+from fake_publisher import FakePublisher
+from live_system import MonitorListener, again_if_disturbed, await_condition
 from monitor_case import MonitorCase, Talker, publishers, subscribers
 from self_awareness.msg import SelfAwareness
 
-MEGABYTE = 10**6
 ALARM = '/self_awareness/alarm'
 AT_ONCE_S = 5.0
 """Within so long the monitor hears whom it can hear, and names the others."""
@@ -30,16 +23,6 @@ AT_ONCE_S = 5.0
 
 def slave_uri() -> str:
     return rosgraph.Master(rospy.get_name()).lookupNode('/self_awareness')
-
-
-def slave_socket() -> socket.socket:
-    address = urlsplit(slave_uri())
-    return socket.create_connection((address.hostname or '', address.port or 0), timeout=5)
-
-
-def resident_of(pid: int) -> int:
-    with open('/proc/{}/statm'.format(pid)) as statm:
-        return int(statm.read().split()[1]) * os.sysconf('SC_PAGESIZE')
 
 
 class HostileTest(MonitorCase):
@@ -75,15 +58,20 @@ class HostileTest(MonitorCase):
     # Who is heard
 
     @again_if_disturbed
-    def test_forged_updates_and_lost_registrations_silence_nobody(self) -> None:
+    def test_whom_a_forged_update_disconnects_is_heard_again(self) -> None:
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
             listener.await_settled()
-            uri = slave_uri()
-            slave: Any = ServerProxy(uri)
+            slave: Any = ServerProxy(slave_uri())
             for uris in ([], ['http://127.0.0.1:9/'], ['http://no-such-host.invalid:1/']):
                 slave.publisherUpdate('/master', '/a', uris)
                 self.await_heard(listener, AT_ONCE_S)
-            # As `rosnode cleanup` does with a node that it cannot reach.
+
+    @again_if_disturbed
+    def test_lost_registrations_silence_nobody(self) -> None:
+        """As `rosnode cleanup` does with a node that it cannot reach."""
+        with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
+            listener.await_settled()
+            uri = slave_uri()
             master: Any = ServerProxy(rosgraph.get_master_uri())
             for answer in (master.unregisterSubscriber('/self_awareness', '/a', uri),
                            master.unregisterPublisher('/self_awareness', ALARM, uri)):
@@ -93,38 +81,6 @@ class HostileTest(MonitorCase):
                 and '/self_awareness' in publishers(ALARM)), AT_ONCE_S)
             self.await_heard(listener, AT_ONCE_S)
             self.check_no_error(listener)
-
-    @again_if_disturbed
-    def test_a_thousand_idle_connections_keep_nobody_out(self) -> None:
-        model = self.model()
-        with ExitStack() as stack:
-            with Talker('/a'):
-                # So few files that the idle connections take all of them.
-                stack.enter_context(self.limited_monitor(model, files=256))
-                listener = stack.enter_context(MonitorListener())
-                listener.await_settled()
-                idle = self.idle_connections(400)
-                for connection in idle:
-                    self.addCleanup(connection.close)
-            # The publisher starts again.
-            with Talker('/a'):
-                self.await_warning(listener, 'connections to this node were closed', 15)
-                self.await_heard(listener, 15)
-
-    def limited_monitor(self, model: str, files: int) -> Process:
-        return Process('prlimit', '--nofile={}'.format(files), 'rosrun', 'self_awareness',
-                       'self_awareness_node', '_model:=' + model, '_detector:=paper',
-                       '_unknown:=ignore', '_settle_time:=0.5', '_poll_interval:=0.1',
-                       '_recorder/directory:=' + self.path('recorder'))
-
-    def idle_connections(self, number: int) -> List[socket.socket]:
-        connections = []
-        for _ in range(number):
-            try:
-                connections.append(slave_socket())
-            except OSError:
-                break  # there are enough
-        return connections
 
     @again_if_disturbed
     def test_who_does_not_answer_is_not_heard_and_not_silent(self) -> None:
@@ -183,72 +139,6 @@ class HostileTest(MonitorCase):
         answers = [self.call('/self_awareness/' + service).success for _ in range(200)]
         self.assertLess(sum(answers), 10, service)
         self.assertGreater(sum(answers), 0, service)
-
-    # What it costs
-
-    @again_if_disturbed
-    def test_announced_gigabytes_take_no_memory(self) -> None:
-        huge = struct.pack('<I', 900 * MEGABYTE)
-        type_fields = {'std_msgs/String': 'data'}  # the content of messages is needed
-        with Talker('/a'), self.monitor(self.model(type_fields=type_fields, threshold=-1.0),
-                                        subscribe='all'), MonitorListener() as listener:
-            listener.await_settled()
-            pid = pid_of('/self_awareness')
-            before = resident_of(pid)
-            with ExitStack() as stack:
-                for number in range(3):
-                    name = '/message_{}'.format(number)
-                    message = string_header(name, name) + huge + bytes(200 * MEGABYTE)
-                    stack.enter_context(FakePublisher(name, message, node=name))
-                stack.enter_context(FakePublisher('/header', huge + bytes(200 * MEGABYTE),
-                                                  node='/header'))
-                self.await_warning(listener, '/header on /header (announces a header of 900 MB)')
-                most = 0
-                end = time.monotonic() + 3
-                while time.monotonic() < end:
-                    most = max(most, resident_of(pid))
-                    time.sleep(0.01)
-                self.assertLess(most, before + 60 * MEGABYTE)
-                self.await_heard(listener, AT_ONCE_S)
-
-    @again_if_disturbed
-    def test_subscribers_that_announce_a_gigabyte_are_cut_off(self) -> None:
-        with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
-            listener.await_settled()
-            pid = pid_of('/self_awareness')
-            before = resident_of(pid)
-            slave: Any = ServerProxy(slave_uri())
-            answer = slave.requestTopic(rospy.get_name(), '/self_awareness/status', [['TCPROS']])
-            connections = [socket.create_connection((answer[2][1], answer[2][2]), timeout=15)
-                           for _ in range(60)]
-            for connection in connections:
-                self.addCleanup(connection.close)
-                connection.sendall(struct.pack('<I', 1000 * MEGABYTE) + b'abc')
-            for connection in connections:
-                self.assertEqual(connection.recv(1), b'', 'it is closed')
-            self.assertLess(resident_of(pid), before + 60 * MEGABYTE)
-            self.await_heard(listener, AT_ONCE_S)
-
-    @again_if_disturbed
-    def test_a_header_without_an_end_is_cut_off(self) -> None:
-        with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
-            listener.await_settled()
-            pid = pid_of('/self_awareness')
-            before = resident_of(pid)
-            with slave_socket() as connection:
-                sent = 0
-                part = b'x' * MEGABYTE
-                try:
-                    connection.sendall(b'POST / HTTP/1.1\r\nx: ')
-                    while sent < 300:
-                        connection.sendall(part)
-                        sent += 1
-                except OSError:
-                    pass
-                self.assertLess(sent, 300)
-            await_condition('its memory is given back',
-                            lambda: resident_of(pid) < before + 60 * MEGABYTE, AT_ONCE_S)
-            self.await_heard(listener, AT_ONCE_S)
 
 
 if __name__ == '__main__':

@@ -12,7 +12,6 @@ import tempfile
 import time
 import unittest
 from typing import Any, Dict, List, Tuple, TypeVar
-from urllib.parse import urlsplit
 
 import rosgraph
 import rostest
@@ -120,12 +119,11 @@ class MasterTest(unittest.TestCase):
                           '_min_space:=0', '_subscribe:=all',
                           '_output:=' + os.path.join(self.folder, 'log'))
 
-    def start_component(self, name: str, port: int = 0) -> Process:
+    def start_component(self, name: str) -> Process:
         topic, period = next((topic, period) for source, topic, period in COMPONENTS
                              if source == name)
         return self.start(sys.executable, script('talker.py'), '__name:=' + name[1:],
-                          '_output:=' + topic, '_rate:={}'.format(1 / period),
-                          '_xmlrpc_port:={}'.format(port))
+                          '_output:=' + topic, '_rate:={}'.format(1 / period))
 
     def start_listener(self) -> Listener:
         return self.keep(Listener(sys.executable, script('listener.py'), env=self.environment))
@@ -218,22 +216,6 @@ class MasterTest(unittest.TestCase):
         listener.await_message('status', warning['at'], abnormal=False, number=20)
         self.check_no_alarm(listener, dead)
         self.assertLess(listener.longest_heartbeat(), LONGEST_HEARTBEAT_S)
-
-    @again_if_disturbed
-    def test_a_node_is_started_again_at_the_same_address(self) -> None:
-        """roscpp takes it for the one that it was connected to, and does not connect again."""
-        self.start_master()
-        listener, talker = self.start_robot()
-        uri = self.master().lookupNode('/talker')
-        for _ in range(2):
-            killed = time.monotonic()
-            talker.send(signal.SIGKILL)
-            self.await_alarm(listener, killed, '/talker')
-            back = time.monotonic()
-            talker = self.start_component('/talker', port=urlsplit(uri).port)
-            listener.await_message('alarm', back, level=SelfAwareness.OK)
-            self.assertEqual(self.master().lookupNode('/talker'), uri)
-            listener.await_message('status', back, abnormal=False, number=20)
 
     @again_if_disturbed
     def test_the_nodes_end_whatever_the_master_does(self) -> None:

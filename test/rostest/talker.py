@@ -2,25 +2,17 @@
 """A component for tests: publishes std_msgs/String on a timer, or in answer to another topic.
 
 Private parameters: ~output (topic), ~rate [Hz] or ~input (topic), ~delay [s] before an answer;
-~variation (0 to 1), the share by which periods and delays vary at most; ~xmlrpc_port, of the node
-itself (0: any).
+~variation (0 to 1), the share by which periods and delays vary at most.
 """
 
 import random
-import sys
 
 import rospy
 from std_msgs.msg import String
 
 
-def xmlrpc_port() -> int:
-    # Before init_node(), parameters of the command line are not at the master yet.
-    given = [each for each in sys.argv if each.startswith('_xmlrpc_port:=')]
-    return int(given[0].split('=')[1]) if given else 0
-
-
 def main() -> None:
-    rospy.init_node('talker', disable_rosout=True, xmlrpc_port=xmlrpc_port())
+    rospy.init_node('talker', disable_rosout=True)
     publisher = rospy.Publisher(rospy.get_param('~output'), String, queue_size=10)
     delay = rospy.get_param('~delay', 0.0)
     variation = rospy.get_param('~variation', 0.0)

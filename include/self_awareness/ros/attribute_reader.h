@@ -44,6 +44,10 @@ class AttributeReader {
   /// Ends the message.
   /// @param now when it came, by the clock that stamps are of [ns]
   core::Attributes end(std::int64_t now);
+  /// A message that is not read: its bytes are taken to repeat those of the one before as that one
+  /// did, its age is not known, and its number goes on.
+  /// @param size of the whole message [bytes]
+  core::Attributes skip(std::uint64_t size);
 
   bool hasHeader() const { return has_header_; }
   /// The number of the last message (header.seq); none: it has none.
@@ -73,6 +77,7 @@ class AttributeReader {
   std::optional<std::uint64_t> last_content_;  // behind its header [bytes]; none: there was none
   std::vector<std::uint8_t> last_sample_;
   std::optional<std::uint32_t> last_number_;
+  bool last_same_ = false;
 };
 
 }  // namespace self_awareness::ros1

@@ -12,15 +12,15 @@ void Arrivals::add(Arrival arrival) {
   {
     const auto waiting = waiting_.lock();
     ++waiting->arrived;
-    const std::size_t content = arrival.content ? arrival.content->size() : 0;
+    const std::size_t bytes = arrival.message->size();
     std::uint32_t& of_connection = waiting->of_connection[arrival.header.get()];
     // A single message is taken however long it is.
-    const bool too_long = waiting->content > 0 && waiting->content + content > kMostContent;
+    const bool too_long = waiting->bytes > 0 && waiting->bytes + bytes > kMostBytes;
     if (of_connection >= queue_size_ || too_long) {
       drop(*waiting, arrival);
       return;
     }
-    waiting->content += content;
+    waiting->bytes += bytes;
     // Half: there is room for what comes until it is taken.
     wake = ++of_connection == queue_size_ / 2 + 1;
     const std::int64_t interval = core::floorToGrid(arrival.stamp, waiting->interval);
@@ -50,7 +50,7 @@ std::vector<Arrivals::Dropped> Arrivals::take(std::vector<Arrival>& arrivals) {
   const auto waiting = waiting_.lock();
   arrivals.swap(waiting->arrivals);
   waiting->of_connection.clear();
-  waiting->content = 0;
+  waiting->bytes = 0;
   return std::exchange(waiting->dropped_of, {});
 }
 

@@ -65,7 +65,7 @@ void LiveEvents::setGraph(const Graph& graph) {
 
 void LiveEvents::encodeAgain() {
   for (auto& [key, live] : connections_) {
-    const Connection connection = connectionFrom(*live.header, live.topic->name);
+    const Connection connection = connectionFrom(*live.header, *live.topic);
     live.encoder = connect(connection);
     live.link = senders_.connect(connection, *encoder_);
     if (live.encoder) {
@@ -73,9 +73,6 @@ void LiveEvents::encodeAgain() {
     } else {
       live.held.clear();
     }
-  }
-  for (auto& [key, live] : connections_) {
-    chooseContent(*live.topic);
   }
 }
 
@@ -126,7 +123,7 @@ void LiveEvents::deliver() {
   for (const Arrivals::Dropped& of : dropped) {
     const auto known = connections_.find(of.header.get());
     if (known != connections_.end() && known->second.encoder) {
-      tellDropped(of.topic->name, *of.header);
+      tellDropped(*of.topic, *of.header);
     }
   }
   release();
@@ -152,42 +149,58 @@ void LiveEvents::onArrival(const Arrival& arrival) {
   if (!encoder) {
     return;
   }
+  core::Event event{
+      handlers_.time ? handlers_.time(arrival.stamp, arrival.steady) : arrival.stamp, 0, {}};
+  if (isRead(live, arrival)) {
+    read(arrival);
+    live.read_at = arrival.steady;
+    live.attributes.begin(content_.size());
+    live.attributes.add(content_.data(), content_.size());
+    event.attributes = live.attributes.end(arrival.stamp);
+  } else {
+    event.attributes = live.attributes.skip(arrival.message->size());
+  }
+  if (event.stamp != arrival.stamp) {
+    event.attributes = {};  // the age is that by a clock which does not count
+  }
   const bool accepted = encoder->accept();
   if (!accepted && !encoder->tellsMode()) {
     return;
   }
-  core::Event event{handlers_.time ? handlers_.time(arrival.stamp, arrival.steady) : arrival.stamp,
-                    0, arrival.attributes};
-  if (event.stamp != arrival.stamp) {
-    event.attributes = {};  // the age is that by a clock which does not count
-  }
   if (!encoder->needsContent()) {
     event.id = encoder->id();
-  } else if (!arrival.content) {  // it came before its content was wanted, or is too long
-    ++unread_;
-    tellDropped(arrival.topic->name, *arrival.header);
-    return;
   } else {
     try {
       if (encoder->tellsMode()) {
-        tellMode(live, event.stamp, *arrival.content, arrival.steady);
-        live.mode = arrival.content;
+        tellMode(live, event.stamp, content_, arrival.steady);
+        live.mode = std::make_shared<const Content>(content_);
         live.mode_told = arrival.steady;
       }
       if (!accepted) {
         return;
       }
-      event.id = encoder->id(arrival.content->data(), arrival.content->size());
+      event.id = encoder->id(content_.data(), content_.size());
       if (handlers_.on_content) {
-        handlers_.on_content(event.id, *arrival.content);
+        handlers_.on_content(event.id, content_);
       }
     } catch (const std::out_of_range& error) {
-      ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
+      ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->c_str(),
                          printable(error.what(), kLongestName).c_str());
       return;
     }
   }
   tell(live, event, arrival.steady);
+}
+
+bool LiveEvents::isRead(const LiveConnection& live, const Arrival& arrival) {
+  return live.encoder->needsContent() || arrival.message->size() <= kLarge || !live.read_at ||
+         arrival.steady - *live.read_at >= kBetweenReads;
+}
+
+void LiveEvents::read(const Arrival& arrival) {
+  content_.resize(arrival.message->size());
+  ros::serialization::OStream stream(content_.data(), arrival.message->size());
+  arrival.message->write(stream);
 }
 
 void LiveEvents::tell(LiveConnection& live, const core::Event& event, std::int64_t steady_time) {
@@ -201,8 +214,8 @@ bool LiveEvents::hold(LiveConnection& live, const core::Event& event, std::int64
     return false;
   }
   if (!live.held_until) {
-    const bool undecided = own_output_.mayCover(
-        connectionFrom(*live.header, live.topic->name).callerid, live.topic->name);
+    const bool undecided =
+        own_output_.mayCover(connectionFrom(*live.header, *live.topic).callerid, *live.topic);
     live.held_until = undecided ? steady_time + hold_ : steady_time;
   }
   if (steady_time >= *live.held_until) {
@@ -235,29 +248,22 @@ void LiveEvents::release() {
 
 LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {
   const auto known = connections_.find(arrival.header.get());
-  if (known != connections_.end() && known->second.topic == arrival.topic) {
+  if (known != connections_.end()) {
     return known->second;
   }
-  // A connection may outlive the subscription, if somebody else in this process listens, too.
-  const auto [connection, is_new] = connections_.try_emplace(arrival.header.get());
-  LiveConnection& live = connection->second;
-  live.topic = arrival.topic;
-  if (is_new) {
-    live.header = arrival.header;
-    const Connection connection = connectionFrom(*arrival.header, arrival.topic->name);
-    live.encoder = connect(connection);
-    live.link = senders_.connect(connection, *encoder_);
-  }
-  chooseContent(*live.topic);
-  return live;
-}
-
-void LiveEvents::chooseContent(Arrival::Topic& topic) const {
-  topic.content_wanted =
-      std::any_of(connections_.begin(), connections_.end(), [&](const auto& connection) {
-        const LiveConnection& live = connection.second;
-        return live.topic.get() == &topic && live.encoder && live.encoder->needsContent();
-      });
+  const Connection connection = connectionFrom(*arrival.header, *arrival.topic);
+  return connections_
+      .try_emplace(arrival.header.get(), LiveConnection{arrival.header,
+                                                        arrival.topic,
+                                                        AttributeReader(connection),
+                                                        std::nullopt,
+                                                        connect(connection),
+                                                        senders_.connect(connection, *encoder_),
+                                                        std::nullopt,
+                                                        {},
+                                                        nullptr,
+                                                        0})
+      .first->second;
 }
 
 std::optional<ConnectionEncoder> LiveEvents::connect(const Connection& connection) {

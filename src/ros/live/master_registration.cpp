@@ -8,24 +8,17 @@
 #include <ros/service_manager.h>
 #include <ros/this_node.h>
 #include <ros/topic_manager.h>
-#include <ros/xmlrpc_manager.h>
-#include <xmlrpcpp/XmlRpcClient.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <utility>
 
 #include "master_calls.h"
+#include "own_node.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
 using XmlRpc::XmlRpcValue;
-
-std::set<std::string> topicsOfRoscpp() {
-  std::vector<std::string> topics;
-  ros::TopicManager::instance()->getSubscribedTopics(topics);
-  return {topics.begin(), topics.end()};
-}
 
 bool knows(const Graph& graph, std::set<std::string> Graph::Topic::*nodes,
            const std::string& topic) {
@@ -34,21 +27,14 @@ bool knows(const Graph& graph, std::set<std::string> Graph::Topic::*nodes,
          (known->second.*nodes).count(ros::this_node::getName()) > 0;
 }
 
-// roscpp does not hear of those that registered before it did: by the slave API, it does.
+// roscpp does not hear of those that registered before it did.
 void tellRoscpp(const std::string& topic, const XmlRpcValue& publishers) {
-  const ros::XMLRPCManager& own = *ros::XMLRPCManager::instance();
-  std::string host;
-  std::uint32_t port = 0;
-  if (!ros::network::splitURI(own.getServerURI(), host, port)) {
-    return;
+  XmlRpcValue answer = publishers;
+  std::set<std::string> uris;
+  for (int i = 0; answer.getType() == XmlRpcValue::TypeArray && i < answer.size(); ++i) {
+    uris.insert(static_cast<std::string>(answer[i]));
   }
-  XmlRpc::XmlRpcClient client(host.c_str(), static_cast<int>(port), "/");
-  XmlRpcValue request;
-  request[0] = ros::this_node::getName();
-  request[1] = topic;
-  request[2] = publishers;
-  XmlRpcValue ignored;
-  client.execute("publisherUpdate", request, ignored);
+  tellPublishers(topic, uris);
 }
 
 }  // namespace
@@ -59,18 +45,6 @@ MasterRegistration::MasterRegistration(std::vector<std::string> services)
       services_(std::move(services)) {
   services_.push_back(ros::names::append(ros::this_node::getName(), "get_loggers"));
   services_.push_back(ros::names::append(ros::this_node::getName(), "set_logger_level"));
-}
-
-MasterRegistration::~MasterRegistration() {
-  const std::string uri = ros::XMLRPCManager::instance()->getServerURI();
-  const std::set<std::string> of_roscpp = topicsOfRoscpp();
-  MasterCalls calls;
-  for (const std::string& topic : listens_to_) {
-    if (of_roscpp.count(topic) == 0) {
-      calls.add("unregisterSubscriber", {topic, uri});
-    }
-  }
-  calls.execute();
 }
 
 MasterRegistration::Master MasterRegistration::check() {
@@ -87,39 +61,22 @@ MasterRegistration::Master MasterRegistration::check() {
   return restarted ? Master::kRestarted : Master::kSame;
 }
 
-std::size_t MasterRegistration::keep(const SystemState& state,
-                                     const std::set<std::string>& topics) {
-  const std::string uri = ros::XMLRPCManager::instance()->getServerURI();
-  const std::set<std::string> of_roscpp = topicsOfRoscpp();
+std::size_t MasterRegistration::keep(const SystemState& state) {
+  const std::string uri = ownUri();
   MasterCalls calls;
   std::size_t vanished = 0;
-  std::vector<std::string> to_tell;  // topics of roscpp, which the first calls are about
-  for (const std::string& topic : of_roscpp) {
+  std::vector<std::string> subscribed;
+  ros::this_node::getSubscribedTopics(subscribed);
+  std::vector<std::string> to_tell;  // which the first calls are about
+  for (const std::string& topic : subscribed) {
     if (!knows(state.graph, &Graph::Topic::subscribers, topic)) {
       calls.add("registerSubscriber", {topic, "*", uri});
       to_tell.push_back(topic);
       ++vanished;
     }
   }
-  for (const std::string& topic : topics) {
-    const bool was_there = !listens_to_.insert(topic).second;
-    if (of_roscpp.count(topic) == 0 && !knows(state.graph, &Graph::Topic::subscribers, topic)) {
-      calls.add("registerSubscriber", {topic, "*", uri});
-      vanished += was_there ? 1 : 0;
-    }
-  }
-  for (auto topic = listens_to_.begin(); topic != listens_to_.end();) {
-    if (topics.count(*topic) > 0) {
-      ++topic;
-      continue;
-    }
-    if (of_roscpp.count(*topic) == 0) {
-      calls.add("unregisterSubscriber", {*topic, uri});
-    }
-    topic = listens_to_.erase(topic);
-  }
   std::vector<std::string> advertised;
-  ros::TopicManager::instance()->getAdvertisedTopics(advertised);
+  ros::this_node::getAdvertisedTopics(advertised);
   for (const std::string& topic : advertised) {
     const ros::PublicationPtr publication =
         ros::TopicManager::instance()->lookupPublication(topic);

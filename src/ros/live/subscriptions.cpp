@@ -1,80 +1,153 @@
 #include "self_awareness/ros/live/subscriptions.h"
 
-#include <poll.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
+#include <ros/transport_hints.h>
 
-#include <array>
-#include <cerrno>
-#include <system_error>
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "../now.h"
-#include "publisher_table.h"
+#include "own_node.h"
+#include "reachable.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr int kBetweenLooks = 50;  // [ms]
+constexpr std::int64_t kMissing = 3 * core::kNanosecondsPerSecond;
+constexpr std::int64_t kLongestPause = 60 * core::kNanosecondsPerSecond;
+// Each may have to be waited for; who waits longest comes first.
+constexpr std::size_t kMostAtATime = 20;
+// Arrivals has the queue: it counts what a publisher loses.
+constexpr std::uint32_t kQueue = 1;
 
-int makeBell() {
-  const int bell = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
-  if (bell < 0) {
-    throw std::system_error(errno, std::generic_category(), "cannot listen to publishers");
+/// Has a message taken by the thread of roscpp that received it: it only goes to Arrivals.
+class AtOnce : public ros::CallbackQueueInterface {
+ public:
+  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t /*owner*/) override {
+    callback->call();
   }
-  return bell;
+  void removeByID(std::uint64_t /*owner*/) override {}
+};
+
+std::size_t numberOfAddresses(const std::set<Publisher>& publishers) {
+  std::set<std::string> addresses;
+  for (const Publisher& publisher : publishers) {
+    addresses.insert(addressIn(publisher.uri));
+  }
+  return addresses.size();
 }
 
 }  // namespace
 
-Subscriptions::Subscriptions(Arrivals& arrivals, const ReadLimits& limits)
-    : wake_(makeBell()),
-      table_(std::make_unique<PublisherTable>(arrivals, limits)),
-      thread_([this] { run(); }) {}
-
-Subscriptions::~Subscriptions() {
-  shared_.lock()->stopping = true;
-  wake();
-  thread_.join();
-  table_.reset();
-  close(wake_);
+Subscriptions::Subscriptions(Arrivals& arrivals)
+    : arrivals_(arrivals), at_once_(std::make_unique<AtOnce>()) {
+  node_handle_.setCallbackQueue(at_once_.get());
 }
 
-void Subscriptions::listen(Listening listening) {
-  shared_.lock()->listening = std::make_shared<const Listening>(std::move(listening));
-  wake();
-}
-
-void Subscriptions::wake() const {
-  eventfd_write(wake_, 1);
-}
-
-void Subscriptions::run() {
-  std::vector<pollfd> sockets;
-  while (true) {
-    std::shared_ptr<const Listening> listening;
-    {
-      const auto shared = shared_.lock();
-      if (shared->stopping) {
-        return;
-      }
-      listening = std::exchange(shared->listening, nullptr);
-    }
-    const std::int64_t now = steadyNow();
-    if (listening) {
-      table_->setListening(*listening, now);
-    }
-    table_->attend(now);
-    std::vector<Unheard> unheard = table_->unheard(now);
-    shared_.lock()->unheard = std::move(unheard);
-    sockets.assign(1, {wake_, POLLIN, 0});
-    table_->sockets(sockets);
-    if (poll(sockets.data(), sockets.size(), kBetweenLooks) > 0) {
-      eventfd_t rings = 0;
-      eventfd_read(wake_, &rings);
-      table_->advance(steadyNow());
+void Subscriptions::listen(const Listening& listening) {
+  for (auto each = subscribers_.begin(); each != subscribers_.end();) {
+    each = listening.topics.count(each->first) > 0 ? std::next(each) : subscribers_.erase(each);
+  }
+  for (const auto& [topic, publishers] : listening.topics) {
+    if (subscribers_.count(topic) == 0) {
+      subscribe(topic);
     }
   }
+  const std::int64_t now = steadyNow();
+  compare(listening, now);
+  tellAgain(listening, now);
+  std::vector<Unheard> unheard = missingFor3s(listening.first, now);
+  shared_.lock()->unheard.swap(unheard);
+}
+
+void Subscriptions::subscribe(const std::string& topic) {
+  using topic_tools::ShapeShifter;
+  const auto name = std::make_shared<const std::string>(topic);
+  subscribers_[topic] = node_handle_.subscribe<ShapeShifter>(
+      topic, kQueue,
+      boost::function<void(const ros::MessageEvent<const ShapeShifter>&)>(
+          [this, name](const ros::MessageEvent<const ShapeShifter>& event) {
+            arrivals_.add({name, event.getConnectionHeaderPtr(),
+                           fromRosTime(event.getReceiptTime()), steadyNow(),
+                           event.getConstMessage()});
+          }),
+      ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay());
+}
+
+void Subscriptions::compare(const Listening& listening, std::int64_t now) {
+  const auto is_complete = [&](const auto& topic) {
+    return subscribers_.at(topic.first).getNumPublishers() == numberOfAddresses(topic.second);
+  };
+  if (std::all_of(listening.topics.begin(), listening.topics.end(), is_complete)) {
+    missing_.clear();
+    return;
+  }
+  const std::set<std::pair<std::string, std::string>> connected = connectedPublishers();
+  const auto known = std::exchange(missing_, {});
+  for (const auto& [topic, publishers] : listening.topics) {
+    for (const Publisher& publisher : publishers) {
+      if (connected.count({topic, addressIn(publisher.uri)}) == 0) {
+        const Publication publication(topic, publisher);
+        const auto before = known.find(publication);
+        if (before != known.end()) {
+          missing_.insert(*before);
+        } else {
+          Missing& missing = missing_[publication];
+          missing.since = now;
+          missing.tell_at = now;  // roscpp leaves alone whom it is about to connect to
+          missing.pause = kMissing;
+        }
+      }
+    }
+  }
+}
+
+void Subscriptions::tellAgain(const Listening& listening, std::int64_t now) {
+  std::vector<std::map<Publication, Missing>::value_type*> due;
+  for (auto& each : missing_) {
+    if (each.second.tell_at <= now) {
+      due.push_back(&each);
+    }
+  }
+  std::sort(due.begin(), due.end(),
+            [](const auto* a, const auto* b) { return a->second.tell_at < b->second.tell_at; });
+  due.resize(std::min(due.size(), kMostAtATime));
+  std::set<std::string> topics;
+  for (auto* const each : due) {
+    const auto& [topic, publisher] = each->first;
+    Missing& missing = each->second;
+    if (now - missing.since >= kMissing) {
+      const Reachable reachable(publisher.uri);
+      missing.why = reachable.why();
+      missing.dead = reachable.nobodyListens();
+    }
+    missing.tell_at = now + missing.pause;
+    missing.pause = std::min(2 * missing.pause, kLongestPause);
+    topics.insert(topic);
+  }
+  for (const std::string& topic : topics) {
+    std::set<std::string> uris;
+    for (const Publisher& publisher : listening.topics.at(topic)) {
+      uris.insert(publisher.uri);
+    }
+    tellPublishers(topic, uris);
+  }
+}
+
+std::vector<Unheard> Subscriptions::missingFor3s(const std::set<std::string>& first,
+                                                 std::int64_t now) const {
+  std::vector<Unheard> unheard;
+  for (const auto& [publication, missing] : missing_) {
+    if (now - missing.since >= kMissing) {
+      unheard.push_back({publication.second.node, publication.first, missing.why, missing.dead});
+    }
+  }
+  std::stable_partition(unheard.begin(), unheard.end(),
+                        [&](const Unheard& each) { return first.count(each.topic) > 0; });
+  unheard.resize(std::min(unheard.size(), kMostUnheard));
+  return unheard;
 }
 
 }  // namespace self_awareness::ros1

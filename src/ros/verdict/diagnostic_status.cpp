@@ -73,6 +73,14 @@ std::vector<std::string> unheard(const CommunicationState& state) {
   return names;
 }
 
+std::vector<std::string> strangers(const CommunicationState& state) {
+  std::vector<std::string> words;
+  for (const CommunicationState::Stranger& each : state.strangers) {
+    words.push_back(withSource(each.source, each.topic) + ": " + std::to_string(each.events));
+  }
+  return words;
+}
+
 // Where nobody looks, it is not quiet.
 void tellNotWatched(const CommunicationState& state, DiagnosticStatusWrapper& status) {
   const std::vector<std::string> names = notWatched(state);
@@ -115,13 +123,6 @@ bool isMuted(const CommunicationState& state) {
   return !state.muted.empty() && state.last.level != DiagnosticStatus::OK;
 }
 
-// Why the death of a component is not found.
-std::string whyNotWatched(const core::evidence::Coverage& component) {
-  return static_cast<double>(component.gaps) < core::evidence::Tuning().fewest_gaps
-             ? "too few messages in training: " + std::to_string(component.gaps) + " gaps"
-             : "all of it came at one moment in training";
-}
-
 // How soon its death is found.
 std::string deathFoundAfter(const core::evidence::Coverage& component) {
   if (component.isWatched()) {
@@ -132,12 +133,24 @@ std::string deathFoundAfter(const core::evidence::Coverage& component) {
 
 }  // namespace
 
+std::string whyNotWatched(const core::evidence::Coverage& component) {
+  if (component.isWatched()) {
+    return "";
+  }
+  if (component.accepted) {
+    return "accepted";
+  }
+  return static_cast<double>(component.gaps) < core::evidence::Tuning().fewest_gaps
+             ? "too few messages in training: " + std::to_string(component.gaps) + " gaps"
+             : "all of it came at one moment in training";
+}
+
 std::vector<std::pair<std::string, std::vector<std::string>>> listsOf(
     const CommunicationState& state) {
   return {{"not watched", notWatched(state)},
           {"delays not watched now", state.disarmed},
           {"nobody subscribed in training", unheard(state)},
-          {"not accepted, events so far", state.strangers},
+          {"not accepted, events so far", strangers(state)},
           {"accepted", state.accepted},
           {"off together, as is accepted", state.mode}};
 }
@@ -146,6 +159,8 @@ void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper&
   const self_awareness::SelfAwareness& last = state.last;
   if (!state.model_error.empty()) {
     status.summary(DiagnosticStatus::ERROR, "no model: " + state.model_error);
+  } else if (!state.nothing_heard.empty()) {
+    status.summary(DiagnosticStatus::WARN, state.nothing_heard);
   } else if (!state.started) {
     status.summary(DiagnosticStatus::OK, "waiting for the first message");
   } else {

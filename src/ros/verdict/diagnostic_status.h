@@ -29,6 +29,8 @@ struct CommunicationState {
   std::vector<core::evidence::Coverage> coverage;  ///< of the components; empty: not known
   /// What was published in training, and nobody subscribed to, by source and topic.
   std::set<core::SourceGraph::Publication> unheard;
+  /// Why nothing has been heard since the start, in words; empty: something was.
+  std::string nothing_heard;
   bool started = false;                ///< something was said of a window
   self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
   bool shared = false;                 ///< what components share is to blame, and no component
@@ -36,8 +38,13 @@ struct CommunicationState {
   HeardReport heard;
   /// Who muted what stands, and until when, in words; empty: nobody did. What is muted is OK.
   std::string muted;
-  /// What is heard that training never saw, and is not accepted, with how often it came, in words.
-  std::vector<std::string> strangers;
+  /// Who is heard that training never saw, and is not accepted.
+  struct Stranger {
+    std::string source;
+    std::string topic;
+    std::uint64_t events = 0;  ///< so far
+  };
+  std::vector<Stranger> strangers;
   /// Whose delays are not watched now, and after whom, in words.
   std::vector<std::string> disarmed;
   std::vector<std::string> accepted;  ///< as normal, in words
@@ -96,6 +103,8 @@ std::vector<std::pair<std::string, std::vector<std::string>>> listsOf(
 /// Fills in the level, message and values of the status of the whole.
 void tellCommunication(const CommunicationState& state,
                        diagnostic_updater::DiagnosticStatusWrapper& status);
+/// Why the death of a component is not found; empty: it is.
+std::string whyNotWatched(const core::evidence::Coverage& component);
 /// Fills in the level, message and values of the status of one component.
 /// @param name one of state.heard.components
 /// @param coverage how soon its faults are found; null: not known

@@ -50,7 +50,7 @@ CommunicationState largeRobot() {
 void fill(CommunicationState& state) {
   for (int i = 0; i < 100; ++i) {
     const std::string name = "/robot/some_node_" + std::to_string(i);
-    state.strangers.push_back(name + "_of_somebody on /robot/topic_of_somebody: 1");
+    state.strangers.push_back({name + "_of_somebody", "/robot/topic_of_somebody", 1});
     state.accepted.push_back(name + "_that_is_new on /robot/topic (stranger), by /rqt");
     state.unheard.insert({name, name + "/debug"});
     state.disarmed.push_back(name + " on " + name + "/status after " + name + " on " + name);
@@ -125,8 +125,8 @@ Sent sendFor600s(CommunicationState state, bool alarm) {
     if (alarm) {
       raise(state, second);
     }
-    for (std::string& stranger : state.strangers) {
-      stranger = stranger.substr(0, stranger.rfind(' ')) + " " + std::to_string(second);
+    for (CommunicationState::Stranger& stranger : state.strangers) {
+      stranger.events = static_cast<std::uint64_t>(second);
     }
     std::string all;
     for (const auto& [key, list] : listsOf(state)) {

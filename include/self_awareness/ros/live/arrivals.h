@@ -1,8 +1,8 @@
 #pragma once
 
 #include <ros/datatypes.h>
+#include <topic_tools/shape_shifter.h>
 
-#include <atomic>
 #include <boost/shared_ptr.hpp>
 #include <cstddef>
 #include <cstdint>
@@ -10,36 +10,20 @@
 #include <memory>
 #include <string>
 #include <unordered_map>
-#include <utility>
 #include <vector>
 
-#include "self_awareness/core/stream/attributes.h"
 #include "self_awareness/core/stream/windows.h"
-#include "self_awareness/ros/live/guarded.h"
+#include "self_awareness/ros/guarded.h"
 
 namespace self_awareness::ros1 {
 
-/// The bytes of a message.
-using Content = std::vector<std::uint8_t>;
-
-/// One message, as it was received.
+/// One message, as roscpp received it.
 struct Arrival {
-  /// A topic, while it is subscribed to or messages of it are waiting.
-  struct Topic {
-    explicit Topic(std::string topic) : name(std::move(topic)) {}
-
-    const std::string name;
-    /// Whether the content of its messages is wanted. At first it is: which messages need not be
-    /// read is not known before the first of them have told the type.
-    std::atomic<bool> content_wanted{true};
-  };
-
-  std::shared_ptr<Topic> topic;
+  std::shared_ptr<const std::string> topic;
   boost::shared_ptr<ros::M_string> header;  ///< all messages of a connection share one
   std::int64_t stamp = 0;                   ///< ROS time of its receipt [ns]
   std::int64_t steady = 0;                  ///< the same by the steady clock [ns]
-  std::shared_ptr<const Content> content;   ///< none: it was not read
-  core::Attributes attributes{};
+  topic_tools::ShapeShifter::ConstPtr message;
 };
 
 /// Keeps what arrives, in any thread, for the one thread that takes it, many messages at a time.
@@ -48,12 +32,12 @@ struct Arrival {
 /// messages.
 class Arrivals {
  public:
-  /// Most bytes of content that may wait, of all connections together.
-  static constexpr std::size_t kMostContent = 200000000;
+  /// Most bytes of messages that may wait, of all connections together.
+  static constexpr std::size_t kMostBytes = 200000000;
 
   /// A connection of which messages were dropped.
   struct Dropped {
-    std::shared_ptr<Arrival::Topic> topic;
+    std::shared_ptr<const std::string> topic;
     boost::shared_ptr<ros::M_string> header;
   };
 
@@ -78,7 +62,7 @@ class Arrivals {
     std::vector<Arrival> arrivals;
     // How many arrivals, by the connection's header, which the arrivals keep alive.
     std::unordered_map<const ros::M_string*, std::uint32_t> of_connection;
-    std::size_t content = 0;  // bytes
+    std::size_t bytes = 0;
     std::vector<Dropped> dropped_of;
     std::uint64_t arrived = 0;
     std::uint64_t dropped = 0;

@@ -13,13 +13,17 @@
 #include <vector>
 
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/attribute_reader.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/live/arrivals.h"
-#include "self_awareness/ros/live/named_once.h"
-#include "self_awareness/ros/live/own_output.h"
+#include "self_awareness/ros/named_once.h"
+#include "self_awareness/ros/own_output.h"
 #include "self_awareness/ros/sender_watch.h"
 
 namespace self_awareness::ros1 {
+
+/// The bytes of a message.
+using Content = std::vector<std::uint8_t>;
 
 /// A node that publishes on a topic.
 struct Publication {
@@ -35,6 +39,10 @@ class LiveEvents {
  public:
   /// Most messages of a publisher that wait to be known for a sibling's: who says more is none.
   static constexpr std::size_t kMostHeld = 100;
+  /// Larger messages [bytes] are read once in kBetweenReads [ns of steady time], unless the
+  /// encoding needs each: that is enough to see that an image is frozen, or old.
+  static constexpr std::uint32_t kLarge = 65536;
+  static constexpr std::int64_t kBetweenReads = 1000000000;
 
   struct Handlers {
     std::function<void(const core::Event&)> on_event;
@@ -83,13 +91,15 @@ class LiveEvents {
   /// Number of publishers that were heard, are connected, and are not left out.
   std::size_t connections() const;
   /// Number of messages that were dropped since the start.
-  std::uint64_t dropped() const { return arrivals_.dropped() + unread_; }
+  std::uint64_t dropped() const { return arrivals_.dropped(); }
 
  private:
   class Wake;
   struct LiveConnection {
     boost::shared_ptr<ros::M_string> header;  // keeps the key below alive
-    std::shared_ptr<Arrival::Topic> topic;
+    std::shared_ptr<const std::string> topic;
+    AttributeReader attributes;
+    std::optional<std::int64_t> read_at;       // last [ns of steady time]; none: not yet
     std::optional<ConnectionEncoder> encoder;  // none: left out by the rules
     std::shared_ptr<SenderWatch::Link> link;   // none: nothing is to be learned of it
     // While it may be left out by a graph to come: until when, from its first message on [ns of
@@ -103,6 +113,10 @@ class LiveEvents {
   /// Chooses anew what is left out, of connections that were heard.
   void encodeAgain();
   void onArrival(const Arrival& arrival);
+  /// Whether the content of a message is wanted.
+  static bool isRead(const LiveConnection& live, const Arrival& arrival);
+  /// Puts the bytes of a message into content_.
+  void read(const Arrival& arrival);
   void tellModeAgain();
   /// @throw std::out_of_range if the message is too short
   void tellMode(LiveConnection& live, std::int64_t stamp, const Content& content,
@@ -117,8 +131,6 @@ class LiveEvents {
   void release();
   void tellDropped(const std::string& topic, const ros::M_string& header) const;
   LiveConnection& connectionOf(const Arrival& arrival);
-  /// The content of the topic's messages is wanted if any of its connections needs it.
-  void chooseContent(Arrival::Topic& topic) const;
   std::optional<ConnectionEncoder> connect(const Connection& connection);
   std::uint64_t wakeId() const { return reinterpret_cast<std::uintptr_t>(this); }
 
@@ -134,9 +146,9 @@ class LiveEvents {
   // All messages of a connection share one header object.
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
   std::vector<Arrival> delivered_;  // kept for its memory
+  Content content_;                 // of the message that was read last; kept for its memory
   SenderWatch senders_;             // by the steady clock
   NamedOnce complained_of_;         // connections
-  std::uint64_t unread_ = 0;        // messages that would have had to be read
 };
 
 }  // namespace self_awareness::ros1

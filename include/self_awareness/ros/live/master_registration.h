@@ -10,33 +10,27 @@
 
 namespace self_awareness::ros1 {
 
-/// What the master knows of this process: its topics and services, and the topics that it listens
-/// to. roscpp registers once; what the master has forgotten since (it was restarted, or somebody
-/// has cleaned up) is registered again. Without that no other node finds this one.
+/// What the master knows of this process: its topics and services. roscpp registers once; what the
+/// master has forgotten since (it was restarted, or somebody has cleaned up) is registered again.
+/// Without that no other node finds this one.
 class MasterRegistration {
  public:
   /// @param services full names of the services to register, besides the logger levels' ones
   explicit MasterRegistration(std::vector<std::string> services);
-  /// Takes back the topics that are listened to; waits for the master.
-  ~MasterRegistration();
-  MasterRegistration(const MasterRegistration&) = delete;
-  MasterRegistration& operator=(const MasterRegistration&) = delete;
 
   enum class Master { kSame, kAway, kRestarted };
   /// Asks who the master is; blocks for as long as it takes to answer.
   Master check();
 
-  /// Registers what the master does not know, and takes back topics that are listened to no more.
-  /// @param topics that are listened to by Subscriptions, of which roscpp does not know
-  /// @return number of registrations that had been there, and had vanished
-  std::size_t keep(const SystemState& state, const std::set<std::string>& topics);
+  /// Registers what the master does not know.
+  /// @return number of registrations that had vanished
+  std::size_t keep(const SystemState& state);
 
  private:
   // Of the services; asked for while roscpp runs: once it ends, it knows its port no more.
   const std::string service_uri_;
   std::vector<std::string> services_;
   std::optional<int> master_pid_;
-  std::set<std::string> listens_to_;  // that were registered here
 };
 
 }  // namespace self_awareness::ros1

@@ -1,22 +1,23 @@
 #pragma once
 
+#include <ros/callback_queue_interface.h>
+#include <ros/node_handle.h>
+#include <ros/subscriber.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
-#include <thread>
 #include <tuple>
+#include <utility>
 #include <vector>
 
+#include "self_awareness/ros/guarded.h"
 #include "self_awareness/ros/live/arrivals.h"
-#include "self_awareness/ros/live/guarded.h"
-#include "self_awareness/ros/live/read_limits.h"
 
 namespace self_awareness::ros1 {
-
-class PublisherTable;
 
 /// Who publishes a topic, as the master names it.
 struct Publisher {
@@ -26,14 +27,11 @@ struct Publisher {
 inline bool operator<(const Publisher& a, const Publisher& b) {
   return std::tie(a.node, a.uri) < std::tie(b.node, b.uri);
 }
-inline bool operator==(const Publisher& a, const Publisher& b) {
-  return std::tie(a.node, a.uri) == std::tie(b.node, b.uri);
-}
 
 /// Who is to be listened to.
 struct Listening {
   std::map<std::string, std::set<Publisher>> topics;
-  std::set<std::string> first;  ///< topics whose publishers are asked before others
+  std::set<std::string> first;  ///< topics whose publishers are told of before others
 };
 
 /// A publisher that the master names, and that is not heard.
@@ -44,45 +42,59 @@ struct Unheard {
   bool dead = false;  ///< its machine says that nobody listens at its address
 };
 
-/// Connections to all publishers of some topics, whose messages go to Arrivals. Who cannot be
-/// connected to is asked again, with longer and longer pauses, in a thread of its own: nobody
-/// waits for a host that does not answer, or has no address.
+/// Subscriptions of roscpp to topics of any type (topic_tools::ShapeShifter), whose messages go to
+/// Arrivals.
 ///
-/// What somebody tells this node's slave API changes nothing here.
+/// The master tells roscpp once who publishes. What is lost on that way, roscpp never learns: a
+/// node that came while its host had no address, or an update that did not arrive. So what the
+/// master says is compared with whom this node is connected to, and who is missing is told to
+/// roscpp again.
+///
+/// Threads: listen() and the destructor are for one thread, and wait for the network; unheard()
+/// is for any.
 class Subscriptions {
  public:
-  /// Publishers of topics that are kept in mind; each takes memory, and a file if it is connected.
-  static constexpr std::size_t kMost = 20000;
-  /// Most that unheard() tells of the first topics, and of the others.
+  /// Most that unheard() tells.
   static constexpr std::size_t kMostUnheard = 1000;
 
   /// @param arrivals must outlive this
-  explicit Subscriptions(Arrivals& arrivals, const ReadLimits& limits = {});
-  /// Nothing arrives any more.
-  ~Subscriptions();
+  explicit Subscriptions(Arrivals& arrivals);
   Subscriptions(const Subscriptions&) = delete;
   Subscriptions& operator=(const Subscriptions&) = delete;
 
-  /// Listens to these and to no others. A connection that stands is kept as long as its topic is
-  /// listened to, whatever the master says: it is the publisher who closes it.
-  void listen(Listening listening);
-  /// Who has not been heard for 2 s or more; those of the first topics before others.
+  /// Listens to these topics and to no others. To be called again and again: it also looks who is
+  /// missing.
+  void listen(const Listening& listening);
+  /// Who has been missing for 3 s; those of the first topics before others.
   std::vector<Unheard> unheard() const { return shared_.lock()->unheard; }
 
  private:
-  struct Shared {
-    std::shared_ptr<const Listening> listening;  // none: nothing new
-    std::vector<Unheard> unheard;
-    bool stopping = false;
+  using Publication = std::pair<std::string, Publisher>;  // topic, and who publishes it
+  struct Missing {
+    std::int64_t since = 0;    // [ns of steady time]
+    std::int64_t tell_at = 0;  // when roscpp is told again [ns of steady time]
+    std::int64_t pause = 0;    // after that [ns]
+    std::string why = "has not answered yet";
+    bool dead = false;
   };
 
-  void run();
-  void wake() const;
+  struct Shared {
+    std::vector<Unheard> unheard;
+  };
 
-  const int wake_;                         // an eventfd
-  std::unique_ptr<PublisherTable> table_;  // the thread's own
+  void subscribe(const std::string& topic);
+  /// Notes who is missing, and since when.
+  void compare(const Listening& listening, std::int64_t now);
+  /// Tells roscpp again of those who are missing, with longer and longer pauses.
+  void tellAgain(const Listening& listening, std::int64_t now);
+  std::vector<Unheard> missingFor3s(const std::set<std::string>& first, std::int64_t now) const;
+
+  Arrivals& arrivals_;
+  const std::unique_ptr<ros::CallbackQueueInterface> at_once_;
+  ros::NodeHandle node_handle_;
+  std::map<std::string, ros::Subscriber> subscribers_;  // by topic
+  std::map<Publication, Missing> missing_;
   Guarded<Shared> shared_;
-  std::thread thread_;  // last: it uses all of the above
 };
 
 }  // namespace self_awareness::ros1

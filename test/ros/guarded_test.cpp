@@ -1,4 +1,4 @@
-#include "self_awareness/ros/live/guarded.h"
+#include "self_awareness/ros/guarded.h"
 
 #include <gtest/gtest.h>
 

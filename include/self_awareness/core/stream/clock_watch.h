@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace self_awareness::ros1 {
+namespace self_awareness::core {
 
 /// Notices that ROS time was set: NTP stepped the wall clock, a bag loops, a simulation was reset;
 /// that it stands still; and that nobody looked for a while. Compares how far ROS time and steady
@@ -35,4 +35,4 @@ class ClockWatch {
   std::optional<std::int64_t> set_at_;  // ROS time right after the last step [ns]
 };
 
-}  // namespace self_awareness::ros1
+}  // namespace self_awareness::core

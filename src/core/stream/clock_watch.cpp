@@ -1,14 +1,12 @@
-#include "self_awareness/ros/live/clock_watch.h"
+#include "self_awareness/core/stream/clock_watch.h"
 
 #include <algorithm>
 #include <cstdlib>
 
 #include "self_awareness/core/stream/clock.h"
 
-namespace self_awareness::ros1 {
+namespace self_awareness::core {
 namespace {
-
-using core::kNanosecondsPerSecond;
 
 // A replay may run faster than the robot did, but not a hundred times as fast.
 constexpr std::int64_t kFastestSimulation = 100;
@@ -16,9 +14,9 @@ constexpr std::int64_t kSmallestSimulatedStep = 5 * kNanosecondsPerSecond;
 
 bool wasSet(std::int64_t ros_advance, std::int64_t steady_advance, bool simulated) {
   if (!simulated) {
-    return std::abs(ros_advance - steady_advance) > core::kSmallestStep;
+    return std::abs(ros_advance - steady_advance) > kSmallestStep;
   }
-  return ros_advance < -core::kLatestEvent ||
+  return ros_advance < -kLatestEvent ||
          ros_advance > std::max(kSmallestSimulatedStep, kFastestSimulation * steady_advance);
 }
 
@@ -39,8 +37,7 @@ bool ClockWatch::look(std::int64_t ros_now, std::int64_t steady_now, bool simula
 }
 
 bool ClockWatch::isStale(std::int64_t stamp) const {
-  return set_at_ &&
-         (stamp < *set_at_ - core::kLatestEvent || stamp > last_->ros_time + core::kLatestEvent);
+  return set_at_ && (stamp < *set_at_ - kLatestEvent || stamp > last_->ros_time + kLatestEvent);
 }
 
-}  // namespace self_awareness::ros1
+}  // namespace self_awareness::core

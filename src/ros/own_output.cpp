@@ -1,4 +1,4 @@
-#include "self_awareness/ros/live/own_output.h"
+#include "self_awareness/ros/own_output.h"
 
 namespace self_awareness::ros1 {
 
