@@ -26,7 +26,11 @@ std::optional<self_awareness::StandingAlarm> AlarmKeeper::read() {
     std::optional<self_awareness::StandingAlarm> standing = ros1::readStandingAlarm(path_);
     if (standing && standing->run_id == run_id_) {
       stands_ = true;
-      return standing;
+      if (standing->model == 0 || standing->model == model_) {
+        return standing;
+      }
+      ROS_WARN("%s: another model judged when this alarm was raised: it does not stand any more",
+               path_.c_str());
     }
   } catch (const std::exception& error) {
     ROS_ERROR("%s; whether an alarm stood is not known", error.what());
@@ -42,6 +46,7 @@ void AlarmKeeper::keep(const self_awareness::SelfAwareness& alarm, std::int64_t 
   }
   self_awareness::StandingAlarm standing;
   standing.run_id = run_id_;
+  standing.model = model_;
   standing.since = ros1::toRosTime(since);
   standing.recording = recording;
   standing.alarm = alarm;

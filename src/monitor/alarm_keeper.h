@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -20,8 +21,11 @@ class AlarmKeeper {
   /// @param run_id of the roscore: alarms of another one are of another start of the robot
   AlarmKeeper(RecorderFolder folder, std::string run_id);
 
+  /// Another model judges from now on.
+  /// @param content number over what it is (Session::content())
+  void setModel(std::uint64_t content) { model_ = content; }
   /// What stood when the monitor ended. A file that is damaged is named in the log, and stays.
-  /// @return none: nothing, or it was another start of the robot
+  /// @return none: nothing, or it was another start of the robot, or another model that judged
   std::optional<self_awareness::StandingAlarm> read();
   /// The alarm has changed, or nobody watched for what stood.
   /// @param alarm as it is published; of another level than ERROR: nothing stands
@@ -38,7 +42,8 @@ class AlarmKeeper {
   const RecorderFolder folder_;
   const std::string path_;
   const std::string run_id_;
-  bool stands_ = false;  // by the file, as it is written or will be
+  std::uint64_t model_ = 0;  // 0: there is none
+  bool stands_ = false;      // by the file, as it is written or will be
   FileWriter writer_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <ros/console.h>
 
+#include <algorithm>
 #include <exception>
 #include <utility>
 #include <vector>
@@ -13,6 +14,15 @@ namespace self_awareness {
 namespace {
 
 constexpr double kPause = 5;  // between two attempts to write the file [s]
+
+/// Nobody watches an incident any more. @return it was open
+bool leaveAlone(self_awareness::Incident& incident) {
+  const bool was_open = incident.over == 0U;
+  if (was_open) {
+    incident.over = incident.unknown = 1U;
+  }
+  return was_open;
+}
 
 }  // namespace
 
@@ -30,11 +40,18 @@ void IncidentKeeper::restore(std::optional<std::uint64_t> standing) {
   }
   std::vector<core::Incident> known;
   for (self_awareness::Incident& each : incidents_.incidents) {
-    each.over = each.over != 0U || each.last != standing;
+    if (each.last != standing) {
+      written_ = !leaveAlone(each) && written_;
+    } else if (each.unknown != 0U) {
+      each.over = each.unknown = 0U;
+    }
     sources_[each.id] = {each.recording, each.model};
     known.push_back(ros1::fromMessage(each));
   }
-  folded_.restore(std::move(known), standing);
+  folded_.restore(std::move(known));
+  if (!written_) {
+    write();
+  }
 }
 
 void IncidentKeeper::add(const core::Alarm& alarm, const core::SourceGraph& graph,
@@ -66,7 +83,13 @@ void IncidentKeeper::advance(std::int64_t now) {
   }
 }
 
-void IncidentKeeper::finish() {
+void IncidentKeeper::finish(std::int64_t now) {
+  for (self_awareness::Incident& each : incidents_.incidents) {
+    if (leaveAlone(each)) {
+      each.ended = std::max(each.ended, ros1::toRosTime(now));
+      written_ = false;
+    }
+  }
   if (!written_) {
     write();
   }

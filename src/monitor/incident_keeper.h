@@ -29,8 +29,9 @@ class IncidentKeeper {
 
   explicit IncidentKeeper(RecorderFolder folder);
 
-  /// Reads the file: to be called first. One that is damaged is named in the log, and is written
-  /// anew with the next incident.
+  /// Reads the file: to be called first. What is open there is known no more, unless its alarm
+  /// stands again. A file that is damaged is named in the log, and is written anew with the next
+  /// incident.
   /// @param standing id of the alarm that stands since before the start; none: none does
   void restore(std::optional<std::uint64_t> standing);
   /// An alarm or a suspicion began, has changed, or is over.
@@ -41,8 +42,9 @@ class IncidentKeeper {
            const std::string& model);
   /// Time has passed. @param now steady time [ns]
   void advance(std::int64_t now);
-  /// Writes what is not written yet, and waits for the disk; nothing is kept after it.
-  void finish();
+  /// Nobody watches what is open from now on. Writes what is not written yet, and waits for the
+  /// disk; nothing is kept after it. @param now ROS time [ns]
+  void finish(std::int64_t now);
 
   /// The last incidents.
   const self_awareness::Incidents& incidents() const { return incidents_; }

@@ -109,7 +109,7 @@ void Monitor::finish() {
   kept_logs_.finish();
   drift_.finish();
   keeper_.finish();
-  incidents_.finish();
+  incidents_.finish(live_->now());
   accepts_.finish();
 }
 
@@ -147,6 +147,7 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
   kept_logs_.endStretch();
   session_ = std::move(session);
   kept_logs_.setModel(parameters_.model, session_->calibrated());
+  keeper_.setModel(session_->content());
   drift_.setModel(parameters_.model, {session_->content(), session_->components()});
   quotes_.clear();
   model_error_.clear();

@@ -107,8 +107,13 @@ std::uint64_t Session::content() const {
     digest.add(static_cast<const std::uint8_t*>(data), size);
   };
   add(&ros1::kMethod, sizeof ros1::kMethod);
-  for (const std::string& component : components()) {
-    add(component.data(), component.size());
+  for (const core::EventType& type : types()) {
+    for (const std::string* text : {&type.source, &type.scope, &type.type}) {
+      add(text->c_str(), text->size() + 1);
+    }
+  }
+  if (trained_.paper_calibration) {
+    add(&trained_.paper_calibration->threshold, sizeof trained_.paper_calibration->threshold);
   }
   if (trained_.calibration) {
     const std::vector<double>& limits = trained_.calibration->limits.tracks;

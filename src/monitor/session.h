@@ -59,7 +59,8 @@ class Session {
   /// Components that shares are of; empty: there are no limits, or they are not known of this
   /// detector.
   std::vector<std::string> components() const;
-  /// A number over what shares depend on, besides what is accepted: another one for another model.
+  /// A number over event types and limits, or the threshold: another one for another model. Alarms
+  /// and shares depend on them, besides what is accepted.
   std::uint64_t content() const;
   /// Components that may be absent, or some topics of which may.
   const std::set<std::string>& optional() const { return optional_; }

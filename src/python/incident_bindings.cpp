@@ -86,6 +86,9 @@ void bindKept(py::module& m) {
       .def_property_readonly("grown", stampOf(&Kept::grown), "[ns]")
       .def_property_readonly("ended", stampOf(&Kept::ended), "[ns]; so far if it is open")
       .def_property_readonly("over", [](const Kept& self) { return self.over != 0U; })
+      .def_property_readonly(
+          "unknown", [](const Kept& self) { return self.unknown != 0U; },
+          "over, as its monitor ended while it was open")
       .def_readonly("alarms", &Kept::alarms, "how often it was raised")
       .def_readonly("near_misses", &Kept::near_misses,
                     "how often it was suspected, and no alarm followed")

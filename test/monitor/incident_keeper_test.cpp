@@ -15,6 +15,7 @@ namespace {
 
 namespace fs = boost::filesystem;
 constexpr std::int64_t kSecond = 1000000000;
+constexpr std::int64_t kEnd = 1000 * kSecond;
 
 class IncidentKeeperTest : public testing::Test {
  protected:
@@ -54,7 +55,7 @@ TEST_F(IncidentKeeperTest, AnIncidentHasTheFileOfItsFirstAlarm) {
   add(keeper, alarm(10, "/a"), "first.bag");
   add(keeper, alarm(20, "/b"), "second.bag");
   add(keeper, alarm(30, "/a"), "third.bag");
-  keeper.finish();
+  keeper.finish(kEnd);
   const auto kept = ros1::readIncidents(path_);
   ASSERT_TRUE(kept);
   EXPECT_EQ(*kept, keeper.incidents());
@@ -71,14 +72,12 @@ TEST_F(IncidentKeeperTest, AnotherStartGoesOnWithThem) {
     keeper.restore(std::nullopt);
     add(keeper, alarm(10, "/a"), "first.bag");
     add(keeper, alarm(20, "/b", false), "second.bag");
-    keeper.finish();
+    keeper.finish(kEnd);
   }
-  IncidentKeeper gone(folder());
-  gone.restore(std::nullopt);
-  EXPECT_TRUE(gone.incidents().incidents[1].over) << "nothing stands";
   IncidentKeeper keeper(folder());
   keeper.restore(20 * kSecond);
-  EXPECT_FALSE(keeper.incidents().incidents[1].over);
+  EXPECT_FALSE(keeper.incidents().incidents[1].over) << "its alarm stands again";
+  EXPECT_FALSE(keeper.incidents().incidents[1].unknown);
   add(keeper, alarm(20, "/b", false), "");
   add(keeper, alarm(40, "/a"), "third.bag");
   ASSERT_EQ(keeper.incidents().incidents.size(), 2U);
@@ -86,6 +85,40 @@ TEST_F(IncidentKeeperTest, AnotherStartGoesOnWithThem) {
   EXPECT_EQ(keeper.incidents().incidents[0].alarms, 2U);
   EXPECT_EQ(keeper.incidents().incidents[1].recording, "second.bag");
   EXPECT_TRUE(keeper.incidents().incidents[1].over);
+  EXPECT_FALSE(keeper.incidents().incidents[1].unknown) << "another alarm has ended it";
+}
+
+TEST_F(IncidentKeeperTest, WhatIsOpenWhenTheMonitorEndsIsUnknownSince) {
+  IncidentKeeper keeper(folder());
+  keeper.restore(std::nullopt);
+  add(keeper, alarm(10, "/a"), "");
+  add(keeper, alarm(20, "/b", false), "");
+  keeper.finish(kEnd);
+  const auto kept = ros1::readIncidents(path_).value().incidents;
+  EXPECT_FALSE(kept.at(0).unknown) << "it was over";
+  EXPECT_TRUE(kept.at(1).over);
+  EXPECT_TRUE(kept.at(1).unknown);
+  EXPECT_EQ(kept.at(1).ended.sec, 1000U);
+}
+
+TEST_F(IncidentKeeperTest, WhatWasOpenWhenTheMonitorWasKilledIsUnknownFromTheNextStartOn) {
+  self_awareness::Incidents before;
+  {
+    IncidentKeeper keeper(folder());
+    keeper.restore(std::nullopt);
+    add(keeper, alarm(20, "/b", false), "");
+    before = keeper.incidents();
+    keeper.finish(kEnd);
+  }
+  ros1::writeIncidents(before, path_);  // as it was: nobody had finished
+  IncidentKeeper keeper(folder());
+  keeper.restore(std::nullopt);
+  EXPECT_TRUE(keeper.incidents().incidents.at(0).over);
+  EXPECT_TRUE(keeper.incidents().incidents.at(0).unknown);
+  keeper.finish(kEnd);
+  const auto kept = ros1::readIncidents(path_).value().incidents;
+  EXPECT_TRUE(kept.at(0).unknown) << "the file says so, too";
+  EXPECT_EQ(kept.at(0).ended.sec, 20U) << "known until then";
 }
 
 TEST_F(IncidentKeeperTest, NearMissesReachTheFileAtTheEndAtTheLatest) {
@@ -98,7 +131,7 @@ TEST_F(IncidentKeeperTest, NearMissesReachTheFileAtTheEndAtTheLatest) {
   keeper.advance(start);
   add(keeper, suspicion(20, "/b"), "");
   keeper.advance(start + IncidentKeeper::kNearMissesEvery - 1);
-  keeper.finish();
+  keeper.finish(kEnd);
   EXPECT_EQ(ros1::readIncidents(path_)->incidents.size(), 2U) << "it is there at the end";
 }
 
@@ -108,7 +141,7 @@ TEST_F(IncidentKeeperTest, ADamagedFileIsIgnored) {
   keeper.restore(std::nullopt);
   EXPECT_TRUE(keeper.incidents().incidents.empty());
   add(keeper, alarm(10, "/a"), "");
-  keeper.finish();
+  keeper.finish(kEnd);
   EXPECT_EQ(ros1::readIncidents(path_)->incidents.size(), 1U);
 }
 

@@ -130,6 +130,28 @@ class IncidentsTest(MonitorCase):
                 opened.recording, self.path('model')), shown)
 
     @again_if_disturbed
+    def test_what_stood_is_unknown_since_the_monitor_ended_if_another_model_judges(self) -> None:
+        with talker('base', '/odom', 10):
+            with self.trained_monitor() as monitor, MonitorListener() as listener:
+                with driver() as victim:
+                    self.await_heard(listener)
+                    victim.send(signal.SIGKILL)
+                    alarm = listener.await_alarm()
+                self.await_incident('it is opened', over=False)
+                monitor.send(signal.SIGINT)
+                monitor.wait(20)
+            kept, = [each for each in self.listed('--component', '/driver')
+                     if each['level'] == 'ERROR']
+            self.assertEqual((kept['over'], kept['unknown']), (True, True))
+            self.assertGreater(kept['ended_ns'], kept['opened_ns'])
+            run_program('train', self.path('1.bag'), '-o', self.path('model'))
+            self.latest.clear()
+            with self.trained_monitor(), MonitorListener() as listener:
+                self.await_incident('it is unknown', over=True, unknown=True, id=alarm.alarm)
+                listener.await_settled()
+                self.assertNotIn(alarm.alarm, [each.alarm for each in listener.alarms])
+
+    @again_if_disturbed
     def test_a_nodelet_and_a_node_have_their_own(self) -> None:
         with talker('base', '/odom', 10), self.trained_monitor(), self.nodelet(), \
                 MonitorListener() as listener, MonitorListener(NODELET) as other, \

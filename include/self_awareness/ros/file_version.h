@@ -23,8 +23,8 @@ struct FileKind {
 inline constexpr FileKind kModelFile{"model", 5, 5, kMethod};
 inline constexpr FileKind kEventLogFile{"event log", 5, 5, 0};
 inline constexpr FileKind kResultBag{"result bag", 2, 1, kMethod};
-inline constexpr FileKind kStandingAlarmFile{"standing alarm", 1, 1, 0};
-inline constexpr FileKind kIncidentsFile{"incidents", 1, 1, 0};
+inline constexpr FileKind kStandingAlarmFile{"standing alarm", 2, 1, 0};
+inline constexpr FileKind kIncidentsFile{"incidents", 2, 1, 0};
 inline constexpr FileKind kAcceptedFile{"accepted", 2, 2, 0};
 inline constexpr FileKind kDriftFile{"drift", 1, 1, kMethod};
 inline constexpr FileKind kGraphFile{"graph", 3, 2, 0};  ///< beside bags, in YAML

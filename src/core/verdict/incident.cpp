@@ -204,13 +204,6 @@ void Incidents::add(const Occurrence& occurrence, const SourceGraph& graph) {
   }
 }
 
-void Incidents::restore(std::vector<Incident> incidents, std::optional<std::uint64_t> standing) {
-  state_.past = std::move(incidents);
-  for (Incident& incident : state_.past) {
-    incident.over = incident.over || incident.last != standing;
-  }
-}
-
 std::vector<Incident> Incidents::list(const SourceGraph& graph) const {
   State state = state_;
   if (open_) {
@@ -290,6 +283,7 @@ void Incidents::merge(std::vector<Incident>& past, const Incident& episode,
   }
   merged.last = episode.last;
   merged.over = episode.over;
+  merged.unknown = episode.unknown;
   merged.end = std::max(merged.end, episode.end);
   addIds(episode.ids, merged);
   *found = std::move(merged);

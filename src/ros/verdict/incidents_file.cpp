@@ -63,6 +63,7 @@ self_awareness::Incident toMessage(const core::Incident& incident) {
   message.grown = toRosTime(incident.grown);
   message.ended = toRosTime(incident.end);
   message.over = incident.over;
+  message.unknown = incident.unknown;
   message.alarms = incident.alarms;
   message.near_misses = incident.near_misses;
   return message;
@@ -85,6 +86,7 @@ core::Incident fromMessage(const self_awareness::Incident& message) {
   incident.grown = fromRosTime(message.grown);
   incident.end = fromRosTime(message.ended);
   incident.over = message.over != 0U;
+  incident.unknown = message.unknown != 0U;
   incident.alarms = message.alarms;
   incident.near_misses = message.near_misses;
   incident.main_duration = incident.end - incident.opened;

@@ -39,8 +39,8 @@ def details(incident: KeptIncident, actions: Sequence[Action]) -> List[str]:
              else what(incident)),
             ('opened', moment(incident.opened)),
             ('grown', moment(incident.grown)),
-            ('over' if incident.over else 'open', moment(incident.ended) if incident.over
-             else f'at {moment(incident.ended)}'),
+            ('unknown since' if incident.unknown else 'over' if incident.over else 'open',
+             moment(incident.ended) if incident.over else f'at {moment(incident.ended)}'),
             ('raised', f'{incident.alarms} times, and {incident.near_misses} near misses')]
     rows += [(title, ', '.join(names)) for title, names in (
         ('failed with it' if incident.component else 'stopped', incident.together),
@@ -72,6 +72,7 @@ def as_values(incident: KeptIncident, actions: Sequence[Action]) -> Dict[str, An
         'grown_ns': incident.grown,
         'ended_ns': incident.ended,
         'over': incident.over,
+        'unknown': incident.unknown,
         'alarms': incident.alarms,
         'near_misses': incident.near_misses,
         'recording': incident.recording or None,
@@ -103,6 +104,8 @@ def _number(actions: Sequence[Action]) -> str:
 def _lasted(incident: KeptIncident) -> str:
     if not incident.over:
         return 'open'
+    if incident.unknown:
+        return f'unknown since {to_the_second(incident.ended)}'
     seconds = (incident.ended - incident.opened) / SECOND_NS
     if seconds < 100.0:
         return f'{seconds:.1f} s'

@@ -230,7 +230,7 @@ TEST_F(IncidentsTest, AnotherStartGoesOnWithWhatStands) {
   add(alarm(10, 12, {"/a"}));
   add(alarm(100, 101, {"/a", "/victim"}, false));
   Incidents started(kRepeats, 4);
-  started.restore(list(), 100);
+  started.restore(list());
   // The alarm of before the start: who it named is not known any more.
   Occurrence standing = alarm(100, 130, {"/a"}, false);
   standing.named.clear();
@@ -241,8 +241,18 @@ TEST_F(IncidentsTest, AnotherStartGoesOnWithWhatStands) {
   EXPECT_EQ(incident.alarms, 2U) << "it is the same alarm";
   EXPECT_EQ(incident.others, Names{"/victim"});
   EXPECT_FALSE(incident.over);
-  started.restore(list(), std::nullopt);
-  EXPECT_TRUE(started.list(graph_).front().over);
+}
+
+TEST_F(IncidentsTest, WhatIsKnownNoMoreIsKnownAgainWhenItIsRaised) {
+  add(alarm(10, 12, {"/a"}));
+  std::vector<Incident> before = list();
+  before[0].unknown = true;
+  Incidents started(kRepeats, 4);
+  started.restore(before);
+  EXPECT_TRUE(started.list(graph_).at(0).unknown);
+  started.add(alarm(13, 14, {"/a"}), graph_);
+  ASSERT_EQ(started.list(graph_).size(), 1U);
+  EXPECT_FALSE(started.list(graph_)[0].unknown);
 }
 
 TEST_F(IncidentsTest, MemoryIsBounded) {

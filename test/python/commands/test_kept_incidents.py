@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import json
+import re
 import time
 from pathlib import Path
 from typing import Any, Callable, List
 
 import genpy
+import genpy.dynamic
 import pytest
 import rosbag
 
@@ -102,6 +104,34 @@ def test_one_is_shown_with_its_record_and_the_way_to_its_report(
     assert incidents.main(['--file', file, '7']) == 0
     assert (f"rosrun self_awareness score '{recording}' --model /robot.model "
             '--report incident_7.html') in capsys.readouterr().out
+
+
+def test_what_was_open_when_its_monitor_ended_is_unknown_since(tmp_path: Path,
+                                                               capsys: Any) -> None:
+    file = write(tmp_path / 'w.incidents', [incident(7, '/player', NOON_S, unknown=True)])
+    assert incidents.main(['--file', file]) == 0
+    said = capsys.readouterr().out
+    assert 'open: 0' in said and '  unknown since 2026-09-21 14:13:40 UTC  /player' in said
+    assert incidents.main(['--file', file, '7']) == 0
+    assert 'unknown since  2026-09-21 14:13:40' in capsys.readouterr().out
+    assert incidents.main(['--file', file, '--json']) == 0
+    assert json.loads(capsys.readouterr().out)[0]['unknown'] is True
+
+
+def test_the_incidents_of_an_older_monitor_are_known(tmp_path: Path, capsys: Any) -> None:
+    text = re.sub(r'\nbool unknown .*', '', Incidents._full_text)
+    assert text != Incidents._full_text
+    former = genpy.dynamic.generate_dynamic('self_awareness/Incidents', text)
+    kept = former['self_awareness/Incidents']()
+    one = former['self_awareness/Incident'](id=7, last=7, level=SelfAwareness.ERROR, kind='died',
+                                            component='/player', alarms=3)
+    kept.incidents = [one]
+    path = tmp_path / 'w.incidents'
+    with rosbag.Bag(str(path), 'w') as bag:
+        bag.write('/incidents', kept, genpy.Time(1))
+    assert incidents.main(['--file', str(path), '--json']) == 0
+    known, = json.loads(capsys.readouterr().out)
+    assert (known['id'], known['over'], known['unknown'], known['alarms']) == (7, False, False, 3)
 
 
 def test_all_monitors_are_found_in_ros_home(tmp_path: Path, capsys: Any,

@@ -51,8 +51,8 @@ def stands(alarm: int, component: str, kind: str, *suspects: Tuple[str, str]) ->
 
 def incident(component: str, alarms: int = 1, over: bool = False, **lists: List[str]) -> Any:
     return SimpleNamespace(**{**dict(
-        id=7, component=component, kind='died', alarms=alarms, over=over, together=[],
-        victims=[], others=[]), **lists})
+        id=7, component=component, kind='died', alarms=alarms, over=over, unknown=False,
+        together=[], victims=[], others=[]), **lists})
 
 
 @pytest.fixture()

@@ -35,7 +35,7 @@ class IncidentsFileTest : public testing::Test {
     incident.grown = incident.opened + 5;
     incident.end = incident.main_duration = incident.opened + 9;
     incident.main_duration = 9;
-    incident.over = true;
+    incident.over = incident.unknown = true;
     incident.alarms = 7;
     incident.near_misses = 3;
     incidents_.incidents = {toMessage(incident)};

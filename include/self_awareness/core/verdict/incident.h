@@ -65,6 +65,7 @@ struct Incident {
   std::int64_t grown = 0;  ///< when it was raised last, or named a further component [ns]
   std::int64_t end = 0;    ///< of the last one, so far if it is not over [ns]
   bool over = false;
+  bool unknown = false;            ///< over for the monitor, which ended while it was open
   std::uint32_t alarms = 0;        ///< how often it was raised
   std::uint32_t near_misses = 0;   ///< episodes of suspicions that became no alarm
   std::int64_t main_duration = 0;  ///< of the main one [ns]
@@ -90,10 +91,8 @@ class Incidents {
   /// the last one: no two stand at the same time.
   /// @param graph whose messages reach whom
   void add(const Occurrence& occurrence, const SourceGraph& graph);
-  /// Goes on with incidents of before the start; to be called first. All are over, but that of
-  /// the alarm that stands.
-  /// @param standing id of the alarm that stands; none: none does
-  void restore(std::vector<Incident> incidents, std::optional<std::uint64_t> standing);
+  /// Goes on with incidents of before the start; to be called first.
+  void restore(std::vector<Incident> incidents) { state_.past = std::move(incidents); }
   /// The incidents in the order in which they were opened.
   /// @param graph whose messages reach whom
   std::vector<Incident> list(const SourceGraph& graph) const;
