@@ -19,25 +19,13 @@ namespace {
 
 constexpr double kPause = 5;  // between two attempts to write the file [s]
 
-constexpr std::size_t kMostNamed = 20;  // in an answer
-
-std::string listed(const std::vector<std::string>& words) {
-  std::string list;
-  for (std::size_t i = 0; i < words.size() && i < kMostNamed; ++i) {
-    list += (i > 0 ? ", " : "") + words[i];
-  }
-  return list + (words.size() > kMostNamed
-                     ? " and " + std::to_string(words.size() - kMostNamed) + " more"
-                     : "");
-}
-
 std::string listed(const std::vector<core::Acceptance>& all) {
   std::vector<std::string> words;
   words.reserve(all.size());
   for (const core::Acceptance& each : all) {
     words.push_back(inWordsOf(each));
   }
-  return listed(words);
+  return self_awareness::listed(words);
 }
 
 }  // namespace
@@ -101,7 +89,7 @@ void AcceptCalls::tell(const std::vector<core::EventType>& types,
 }
 
 bool AcceptCalls::onAccept(Call& call) {
-  if (!calls_.mayServe("accept", call, steadyNow())) {
+  if (!asksWhat(call.getRequest()) && !calls_.mayServe("accept", call, steadyNow())) {
     return true;
   }
   // What does not belong in a text takes three bytes, and a longer name could not be read again.
@@ -115,6 +103,10 @@ Accept::Response AcceptCalls::serve(const Accept::Request& request, const std::s
   const std::optional<Acceptable> acceptable = handlers_.acceptable();
   if (!acceptable) {
     response.message = "there is no model that judges by evidence (~detector)";
+    return response;
+  }
+  if (asksWhat(request)) {
+    response.message = offerOf(request, *acceptable, accepted_);
     return response;
   }
   WantedAcceptances wanted;

@@ -12,6 +12,8 @@
 namespace self_awareness {
 namespace {
 
+constexpr std::size_t kMostNamed = 20;  // in an answer
+
 /// Names by which somebody may be called.
 struct Names {
   std::set<std::string> components;
@@ -154,8 +156,8 @@ std::vector<core::Acceptance> ofIncident(const self_awareness::Incident& inciden
   if (incident.kind == core::toString(core::Kind::kNewMode)) {
     if (incident.together.empty() || incident.together.size() == core::Incident::kMostNamed) {
       throw std::invalid_argument(
-          "not all components that were off are known any more; accept the mode while it stands: "
-          "{}");
+          "not all components that were off are known any more; accept the mode while it stands, "
+          "by its alarm");
     }
     return {ofMode(incident.together)};
   }
@@ -190,14 +192,44 @@ std::vector<core::Acceptance> ofIncident(std::uint64_t id,
 }
 
 std::vector<core::Acceptance> ofWhatStands(std::uint64_t id, const Acceptable& acceptable) {
-  if (id != 0 && (!acceptable.alarm || acceptable.alarm->id != id)) {
+  if (!acceptable.alarm || acceptable.alarm->id != id) {
     throw std::invalid_argument("alarm: " + std::to_string(id) + " does not stand any more");
   }
-  if (!acceptable.alarm) {
-    throw std::invalid_argument(
-        "nothing stands; name a component or a topic, or the id of an incident");
-  }
   return ofAlarm(*acceptable.alarm, acceptable.vocabulary);
+}
+
+bool isAccepted(const core::Acceptance& one, const core::Acceptances& accepted) {
+  return one.together.empty()
+             ? accepted.covers(one.component, one.topic, one.kind.value_or(core::Kind::kDied))
+             : accepted.coversMode(one.together);
+}
+
+/// A call as it is typed, and what it accepts. Empty: there is nothing in it that is not accepted.
+std::string offer(const std::string& call, const std::vector<core::Acceptance>& all,
+                  const core::Acceptances& accepted) {
+  const bool known = std::all_of(all.begin(), all.end(), [&](const core::Acceptance& one) {
+    return isAccepted(one, accepted);
+  });
+  return known ? "" : "\"{" + call + "}\" for " + inWordsOf(all);
+}
+
+/// What the last incidents hold against components, but for that of the alarm that stands.
+std::vector<std::string> offersOfIncidents(const Acceptable& acceptable,
+                                           const core::Acceptances& accepted) {
+  std::vector<std::string> offers;
+  const auto& known = acceptable.incidents.incidents;
+  for (auto each = known.rbegin(); each != known.rend(); ++each) {
+    if (acceptable.alarm && acceptable.alarm->id == each->last) {
+      continue;
+    }
+    try {
+      offers.push_back(
+          offer("incident: " + std::to_string(each->id), ofIncident(*each), accepted));
+    } catch (const std::invalid_argument&) {
+      continue;  // nobody is to blame for it
+    }
+  }
+  return offers;
 }
 
 bool namesNothing(const Accept::Request& request) {
@@ -249,6 +281,43 @@ WantedAcceptances ofNames(const Accept::Request& request, const Acceptable& acce
 
 }  // namespace
 
+bool asksWhat(const Accept::Request& request) {
+  return namesNothing(request) && request.more.empty() && request.alarm == 0 &&
+         request.incident == 0;
+}
+
+std::string offerOf(const Accept::Request& request, const Acceptable& acceptable,
+                    const core::Acceptances& accepted) {
+  std::vector<std::string> offers;
+  if (request.undo != 0U) {
+    for (const core::Acceptance& each : accepted.list()) {
+      offers.push_back(inWordsOf(each));
+    }
+    return offers.empty() ? "nothing is accepted"
+                          : "name what is to be judged again: " + listed(offers);
+  }
+  if (acceptable.alarm) {
+    const std::string id = std::to_string(acceptable.alarm->id);
+    try {
+      offers.push_back(
+          offer("alarm: " + id, ofAlarm(*acceptable.alarm, acceptable.vocabulary), accepted));
+    } catch (const std::invalid_argument& error) {
+      offers.push_back("alarm " + id + ": " + error.what());
+    }
+  }
+  for (const auto& [id, events] : acceptable.unknown) {
+    const core::EventType& type = acceptable.vocabulary.at(id);
+    offers.push_back("\"{component: " + core::componentOf(type.source, type.scope) +
+                     ", topic: " + type.scope + ", kind: stranger}\" for " +
+                     std::to_string(events) + " messages of it");
+  }
+  const std::vector<std::string> of_incidents = offersOfIncidents(acceptable, accepted);
+  offers.insert(offers.end(), of_incidents.begin(), of_incidents.end());
+  offers.erase(std::remove(offers.begin(), offers.end(), ""), offers.end());
+  return offers.empty() ? "nothing stands, and nobody is new; name a component or a topic"
+                        : "nothing is accepted, as nothing is named. Give " + listed(offers);
+}
+
 WantedAcceptances requestOf(const Accept::Request& request, const Acceptable& acceptable,
                             const core::Acceptances& accepted) {
   const bool names = !namesNothing(request) || !request.more.empty();
@@ -283,6 +352,16 @@ std::string inWordsOf(const std::vector<core::Acceptance>& all) {
     words += (words.empty() ? "" : ", ") + inWordsOf(each);
   }
   return words;
+}
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size() && i < kMostNamed; ++i) {
+    list += (i > 0 ? ", " : "") + words[i];
+  }
+  return list + (words.size() > kMostNamed
+                     ? " and " + std::to_string(words.size() - kMostNamed) + " more"
+                     : "");
 }
 
 bool concerns(const core::Acceptance& acceptance, const core::EventType& type) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,8 +20,10 @@ struct Acceptable {
   std::optional<core::Alarm> alarm;  ///< that stands; none: nothing does
   const self_awareness::Incidents& incidents;
   const core::Vocabulary& vocabulary;  ///< that the ids of the alarm's suspects are of
-  const ros1::Encoder& encoder;        ///< that knows by what names events call nodes and topics
-  std::int64_t now;                    ///< ROS time [ns]
+  /// Events that training never saw and nobody has accepted, by their ids.
+  std::map<core::EventId, std::uint64_t> unknown;
+  const ros1::Encoder& encoder;  ///< that knows by what names events call nodes and topics
+  std::int64_t now;              ///< ROS time [ns]
 };
 
 /// What a call of ~accept asks for.
@@ -29,7 +32,14 @@ struct WantedAcceptances {
   std::vector<std::string> refused;     ///< of several, who, and why
 };
 
-/// Reads a call.
+/// Whether a call names nothing, and so asks what it may name.
+bool asksWhat(const Accept::Request& request);
+/// What a call may name now, as it is typed: of what stands, of who is new, of incidents; or what
+/// is accepted, to take it back.
+std::string offerOf(const Accept::Request& request, const Acceptable& acceptable,
+                    const core::Acceptances& accepted);
+
+/// Reads a call that names something.
 /// @param accepted what is accepted so far: to take it back, its names are known
 /// @throw std::invalid_argument says what is wrong with the request: there is nothing that it may
 /// ask for
@@ -40,6 +50,8 @@ WantedAcceptances requestOf(const Accept::Request& request, const Acceptable& ac
 std::string inWordsOf(const core::Acceptance& acceptance);
 /// The same of several.
 std::string inWordsOf(const std::vector<core::Acceptance>& all);
+/// Some words after each other, and how many more there are.
+std::string listed(const std::vector<std::string>& words);
 /// Whether it is about an event type, or about who sends it.
 bool concerns(const core::Acceptance& acceptance, const core::EventType& type);
 /// Whether it is about somebody who was heard, or whom the model knows.

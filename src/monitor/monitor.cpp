@@ -337,8 +337,8 @@ std::optional<Acceptable> Monitor::acceptable() const {
   if (!session_ || parameters_.method != MonitorParameters::Method::kEvidence) {
     return std::nullopt;
   }
-  return Acceptable{announcer_.alarm().standing(), incidents_.incidents(), session_->vocabulary(),
-                    *session_->encoder(), live_->now()};
+  return Acceptable{announcer_.alarm().standing(),  incidents_.incidents(), session_->vocabulary(),
+                    session_->detector().unknown(), *session_->encoder(),   live_->now()};
 }
 
 void Monitor::onAccepted(const std::string& caller, bool undo) {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -66,6 +68,12 @@ class AcceptCallsTest : public testing::Test {
     return response.message;
   }
   std::string accepted() const { return inWordsOf(calls_.accepted().list()); }
+  /// Accepts what stands. @return the answer
+  std::string acceptAlarm(bool success = true) {
+    Accept::Request request;
+    request.alarm = alarm_->id;
+    return call(request, success);
+  }
   /// An alarm that stands from now on.
   core::Alarm& stands(core::Kind kind, std::vector<core::Suspect> suspects) {
     core::Alarm& alarm = alarm_.emplace();
@@ -88,11 +96,12 @@ class AcceptCallsTest : public testing::Test {
   ros1::Encoder encoder_{rules(), [](const core::EventType& /*type*/) { return 0; }};
   std::optional<core::Alarm> alarm_;
   self_awareness::Incidents incidents_;
+  std::map<core::EventId, std::uint64_t> unknown_;
   int changes_ = 0;
   OperatorCalls admitted_;
   AcceptCalls calls_{admitted_,
                      {[this]() -> std::optional<Acceptable> {
-                        return Acceptable{alarm_, incidents_, vocabulary_, encoder_, 7};
+                        return Acceptable{alarm_, incidents_, vocabulary_, unknown_, encoder_, 7};
                       },
                       [this](const std::string& /*caller*/, bool /*undo*/) { ++changes_; }}};
 };
@@ -112,13 +121,45 @@ TEST_F(AcceptCallsTest, WhatStandsIsTakenByItsIdWhileItStands) {
   EXPECT_EQ(changes_, 1);
 }
 
+TEST_F(AcceptCallsTest, ACallThatNamesNothingAcceptsNothingAndTellsWhatMayBeNamed) {
+  EXPECT_EQ(call({}, false), "nothing stands, and nobody is new; name a component or a topic");
+  stands(core::Kind::kDied, {suspect(0, "/driver", core::Kind::kDied)});
+  unknown_[1] = 12;
+  for (std::uint64_t id = 2; id < 6; ++id) {
+    self_awareness::Incident& incident = incidents_.incidents.emplace_back();
+    incident.id = incident.last = id;
+    incident.kind = id == 2 ? "busy machine" : "died";
+    incident.component = id == 2 ? "" : id == 3 ? "/slam" : "/driver";
+  }
+  const std::string offers =
+      "nothing is accepted, as nothing is named. Give \"{alarm: 5}\" for /driver on /scan (died), "
+      "\"{component: /base, topic: /odom, kind: stranger}\" for 12 messages of it, "
+      "\"{incident: 4}\" for /driver (died)";
+  EXPECT_EQ(call({}, false), offers + ", \"{incident: 3}\" for /slam (died)");
+  call(asked("/slam"));
+  EXPECT_EQ(call({}, false), offers) << "what is accepted already is not offered";
+  alarm_->culprit.clear();
+  EXPECT_NE(call({}, false).find("alarm 5: nobody is to blame for it (died); name a component"),
+            std::string::npos);
+  EXPECT_EQ(accepted(), "/slam");
+  EXPECT_EQ(changes_, 1);
+}
+
+TEST_F(AcceptCallsTest, ACallThatNamesNothingToTakeBackTellsWhatIsAccepted) {
+  EXPECT_EQ(call(asked("", "", "", true), false), "nothing is accepted");
+  call(asked("/driver", "/scan", "slow"));
+  call(asked("/base"));
+  EXPECT_EQ(call(asked("", "", "", true), false),
+            "name what is to be judged again: /driver on /scan (slow), /base");
+}
+
 TEST_F(AcceptCallsTest, WhatIsNobodysFaultIsRefused) {
   for (const core::Kind kind :
        {core::Kind::kAllSilent, core::Kind::kNewMode, core::Kind::kBusyMachine}) {
     core::Alarm& alarm = stands(
         kind, {suspect(0, "/driver", core::Kind::kDied), suspect(1, "/base", core::Kind::kDied)});
     alarm.culprit.clear();
-    const std::string answer = call({}, false);
+    const std::string answer = acceptAlarm(false);
     EXPECT_NE(answer.find(core::toString(kind)), std::string::npos) << answer;
     EXPECT_NE(answer.find("name a component"), std::string::npos) << answer;
     call(asked("/driver", "", core::toString(kind)), false);
@@ -133,7 +174,7 @@ TEST_F(AcceptCallsTest, AModeIsTakenWhileItStandsOrByItsIncidentAndTakenBack) {
   alarm.silent->others_go_on = true;
   alarm.silent->components = {"/base", "/camera", "/driver", "/imu"};
   EXPECT_FALSE(calls_.covers(alarm, vocabulary_));
-  call({});
+  acceptAlarm();
   EXPECT_EQ(accepted(), words);
   EXPECT_TRUE(calls_.covers(alarm, vocabulary_));
   alarm.silent->components.push_back("/other");
@@ -170,7 +211,7 @@ TEST_F(AcceptCallsTest, WhileTheMachineIsBusyOnlyTheCulpritIsTaken) {
   stands(core::Kind::kDied,
          {suspect(0, "/driver", core::Kind::kDied), suspect(1, "/base", core::Kind::kLate)})
       .busy = core::Busy();
-  call({});
+  acceptAlarm();
   EXPECT_EQ(accepted(), "/driver on /scan (died)");
 }
 
@@ -178,7 +219,7 @@ TEST_F(AcceptCallsTest, OfConnectionsEachTopicIsTaken) {
   std::vector<core::Suspect> deaf{suspect(1, "/base", core::Kind::kUnsubscribed, false)};
   deaf[0].reason.topics = {"/cmd_vel", "/stop"};
   stands(core::Kind::kUnsubscribed, deaf);
-  EXPECT_EQ(call({}).find("nobody of that name"), std::string::npos) << "/base is known";
+  EXPECT_EQ(acceptAlarm().find("nobody of that name"), std::string::npos) << "/base is known";
   EXPECT_EQ(accepted(), "/base on /cmd_vel (not subscribed), /base on /stop (not subscribed)");
   EXPECT_TRUE(calls_.covers(*alarm_, vocabulary_));
   call(asked("/base", "/stop", "", true));

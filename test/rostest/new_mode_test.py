@@ -72,7 +72,10 @@ class NewModeTest(TrainedCase):
                     if status.level == SelfAwareness.WARN
                     and status.kind == SelfAwareness.NEW_MODE), None), 60)
                 self.assertEqual(told.component, '')
-                said = accept()
+                asked = accept()
+                self.assertFalse(asked.success, 'it only asks')
+                self.assertIn('{{alarm: {}}}'.format(told.alarm), asked.message)
+                said = accept(alarm=told.alarm)
                 self.assertTrue(said.success, said.message)
                 self.assertIn('/arm /base /camera /lidar (new mode)', said.message)
                 await_condition('the suspicion is over', lambda: (
