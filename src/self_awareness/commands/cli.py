@@ -19,6 +19,9 @@ from self_awareness.stamps import SECOND_NS, nanoseconds
 
 _Value = TypeVar('_Value')
 
+Work = Callable[[argparse.Namespace], Optional[int]]
+"""What a program does with its arguments; it may return an exit code."""
+
 PLOT_ENDINGS = ('.png', '.pdf', '.svg')
 """Of files of pictures: the ending says the format."""
 
@@ -30,15 +33,15 @@ _MOST = 10_000
 _MOST_WINDOWS = 100_000
 
 
-def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], None],
-        argv: Optional[Sequence[str]]) -> int:
+def run(parser: argparse.ArgumentParser, work: Work, argv: Optional[Sequence[str]]) -> int:
     """Parse the arguments, do the work, and turn what goes wrong into one line.
 
     The parser gets the option --version. Without `argv`, this is the whole program: its
     arguments are those of the command line, and Ctrl-C ends it without a word.
 
     Returns:
-        0 on success, 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
+        0 on success, or what the work returns; 1 after an error, 2 after wrong usage, 130 after
+        Ctrl-C.
     """
     parser.add_argument('--version', action='version', version=f'self_awareness {VERSION}')
     if argv is not None:
@@ -49,11 +52,10 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
     return code
 
 
-def _run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], None],
-         argv: Optional[Sequence[str]]) -> int:
+def _run(parser: argparse.ArgumentParser, work: Work, argv: Optional[Sequence[str]]) -> int:
     try:
         _check_texts(sys.argv[1:] if argv is None else argv)
-        work(parser.parse_args(argv))
+        code = work(parser.parse_args(argv))
         sys.stdout.flush()
     except SystemExit as stop:  # of argparse: after --help, or after wrong usage
         return int(stop.code or 0)
@@ -71,7 +73,7 @@ def _run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], N
     except OSError as error:
         file = f'{error.filename}: ' if error.filename else ''
         return _fail(parser.prog, _output_problem() or f'{file}{error.strerror or error}')
-    return 0
+    return code or 0
 
 
 def _say_nothing_of_ctrl_c() -> None:

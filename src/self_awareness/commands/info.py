@@ -8,16 +8,16 @@ import shutil
 from collections import Counter
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import (EventType, ModelFileError, PaperModel, ResultBag, TrainedModel,
-                            recordings_in_event_log)
+from self_awareness import (BagError, EventType, ModelFileError, PaperModel, ResultBag,
+                            TrainedModel, recordings_in_event_log)
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.learning.age import age_of, logs_of
 from self_awareness.parts import BagPart, look
 from self_awareness.recordings import is_bag
 from self_awareness.reporting import age_text, histogram_text
-from self_awareness.reporting import (coverage_text, recordings_text, relations_text, robots_text,
-                                      tuning_text, unheard_text)
+from self_awareness.reporting import (coverage_text, rates_text, recordings_text,
+                                      relations_text, robots_text, tuning_text, unheard_text)
 from self_awareness.reporting.event_log_summary import summarise_event_log
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
@@ -40,6 +40,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 def _info(arguments: argparse.Namespace) -> None:
     if arguments.age is not None:
         _info_of_age(arguments)
+        return
+    if arguments.usual is not None:
+        _info_of_rates(arguments)
         return
     first = BagPart.parse(arguments.model)
     if arguments.more or os.path.isdir(first.path) or first.last is not None:
@@ -64,9 +67,7 @@ def _info(arguments: argparse.Namespace) -> None:
 
 
 def _info_of_age(arguments: argparse.Namespace) -> None:
-    for option, given in (('pair', arguments.pair), ('tuning', arguments.tuning)):
-        if given:
-            raise ValueError(f'--{option}: says nothing of an age (--age)')
+    _refuse(arguments, 'says nothing of an age (--age)')
     named = logs_of(arguments.model, arguments.age)
     found = age_of(arguments.model, _load(arguments.model), named, arguments.skip_bad)
     if arguments.json:
@@ -76,10 +77,28 @@ def _info_of_age(arguments: argparse.Namespace) -> None:
     cli.say_skipped('info', named.bad)
 
 
+def _info_of_rates(arguments: argparse.Namespace) -> None:
+    _refuse(arguments, 'says nothing of rates (--model)')
+    trained = TrainedModel.load(arguments.usual)
+    named = look(map(BagPart.parse, [arguments.model, *arguments.more]))
+    found = []
+    for part in named.parts:
+        try:
+            found.append(rates_text.summarise(
+                trained, cli.read_recording('info', trained, part)))
+        except (BagError, ValueError) as error:
+            named.bad.append(str(error))
+    if arguments.json:
+        print(json.dumps({'recordings': found, 'skipped': named.bad}, indent=2, allow_nan=False))
+    else:
+        cli.print_lines(named.told)
+        for each in found:
+            cli.print_lines(rates_text.lines(each))
+    cli.end_with('info', named, arguments.skip_bad)
+
+
 def _info_of_recordings(arguments: argparse.Namespace) -> None:
-    for option, given in (('pair', arguments.pair), ('tuning', arguments.tuning)):
-        if given:
-            raise ValueError(f'--{option}: is for one model, not for recordings')
+    _refuse(arguments, 'is for one model, not for recordings')
     named = look(map(BagPart.parse, [arguments.model, *arguments.more]))
     summary = recordings_text.summarise(named)
     if arguments.json:
@@ -89,21 +108,28 @@ def _info_of_recordings(arguments: argparse.Namespace) -> None:
     cli.end_with('info', named, arguments.skip_bad)
 
 
+def _refuse(arguments: argparse.Namespace, why: str) -> None:
+    """Refuse the options that are for models alone."""
+    for option, given in (('pair', arguments.pair), ('tuning', arguments.tuning)):
+        if given:
+            raise ValueError(f'--{option}: {why}')
+
+
 def _load(path: str) -> TrainedModel:
     try:
         return TrainedModel.load(path)
     except ModelFileError as error:
         if is_bag(path):
             raise ValueError(f'{path}: a recording, not a model. To see what is in it: rosbag '
-                             f"info '{path}'. To see when it was abnormal, and why: rosrun "
-                             f"self_awareness score '{path}' --model MODEL") from error
+                             f"info '{path}'. To see its rates beside the usual ones: rosrun "
+                             f"self_awareness info '{path}' --model MODEL. To see when "
+                             f"it was abnormal, and why: rosrun self_awareness score "
+                             f"'{path}' --model MODEL") from error
         raise
 
 
 def _info_of_log(arguments: argparse.Namespace, recordings: int) -> None:
-    for option, given in (('pair', arguments.pair), ('tuning', arguments.tuning)):
-        if given:
-            raise ValueError(f'--{option}: is for models, and {arguments.model} is an event log')
+    _refuse(arguments, f'is for models, and {arguments.model} is an event log')
     summary = summarise_event_log(arguments.model, recordings)
     if arguments.json:
         print(json.dumps(summary, indent=2, allow_nan=False))
@@ -336,8 +362,12 @@ def _parser() -> argparse.ArgumentParser:
     how.add_argument('--pair', nargs=2, metavar=('A', 'B'),
                      help="draw the delays from the last A to the current B; event types are "
                           "written 'SOURCE SCOPE TYPE', and a part that only one has is enough")
-    parser.add_argument('--age', nargs='*', metavar='LOG',
-                        help='say how far recordings of normal operation since have drifted from '
-                             'what the model was learned from (default: those of MODEL.kept)')
+    other = parser.add_mutually_exclusive_group()
+    other.add_argument('--model', dest='usual', metavar='MODEL',
+                       help='the others are recordings: how often each topic came in them, beside '
+                            'how often it came in the training of this model')
+    other.add_argument('--age', nargs='*', metavar='LOG',
+                       help='say how far recordings of normal operation since have drifted from '
+                            'what the model was learned from (default: those of MODEL.kept)')
     cli.add_skip_bad(parser)
     return parser

@@ -5,7 +5,9 @@ import argparse
 import csv
 import json
 import math
+import webbrowser
 from dataclasses import asdict
+from pathlib import Path
 from typing import Iterator, List, Optional, Sequence
 
 import numpy as np
@@ -34,6 +36,7 @@ from self_awareness.stamps import SECOND_NS, span
 
 _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold', 'abnormal')
 _ROWS = 1 << 16  # of the table that are made at once
+_ALARM = 3  # exit code
 
 _EPILOG = """\
 Name a part of a recording as BAG@START-END, in s from its first message. Times that are printed
@@ -48,6 +51,8 @@ score and counts as 0.
 The result bag has /self_awareness/status, /self_awareness/alarm and /diagnostics, without what the
 monitor says of itself. Several recordings go into one bag; they must not overlap in time. It
 replaces another result bag, and no other file.
+
+Exit code: 0, or 3 with --fail if there was an alarm; 1 after an error, 2 after wrong usage.
 examples:
   score crash.bag --model robot.model --report crash.html
   score crash.bag@20-60 --model robot.model --json crash.json
@@ -59,7 +64,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     return cli.run(_parser(), _score, argv)
 
 
-def _score(arguments: argparse.Namespace) -> None:
+def _score(arguments: argparse.Namespace) -> int:
+    if arguments.open and arguments.report is None:
+        raise ValueError('--open: opens the report; name it by --report FILE.html')
     named = look(arguments.bags)
     if not named.parts:
         named.check()
@@ -84,6 +91,9 @@ def _score(arguments: argparse.Namespace) -> None:
         for each in accepted:
             print(f'{arguments.model}: accepted, so not judged: {accepted_file.in_words(each)}')
         threshold = None if trained.calibration is None else EVIDENCE_THRESHOLD
+    if threshold is None and arguments.fail:
+        raise ValueError(f'--fail: {arguments.model} is not calibrated, so nothing would ever be '
+                         'an alarm (rosrun self_awareness calibrate)')
     if threshold is None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '
               '(rosrun self_awareness calibrate)')
@@ -119,7 +129,16 @@ def _score(arguments: argparse.Namespace) -> None:
     if arguments.report is not None:
         save_report(arguments.report, [section(each, f'recording-{number}')
                                        for number, each in enumerate(judged, 1)])
+    if arguments.open:
+        _open(arguments.report)
     cli.end_with('score', named, arguments.skip_bad)
+    return _ALARM if arguments.fail and any(each.verdicts.alarms for each in judged) else 0
+
+
+def _open(report: str) -> None:
+    if not webbrowser.open(Path(report).resolve().as_uri()):
+        cli.warn('score', f'no browser was found here: copy {report} to where there is one, and '
+                 'open it there')
 
 
 def _print(judged: Judged) -> None:
@@ -267,6 +286,10 @@ def _parser() -> argparse.ArgumentParser:
                         help='draw the scores over time; the name ends in .png, .pdf or .svg')
     parser.add_argument('--report', type=cli.checked(check_name), metavar='FILE.html',
                         help='write a page for a browser: who failed, when and why')
+    parser.add_argument('--open', action='store_true',
+                        help='open the report in a browser')
+    parser.add_argument('--fail', action='store_true',
+                        help='for scripts: end with exit code 3 if there was an alarm')
     parser.add_argument('--result-bag', metavar='FILE.bag',
                         help='write what the monitor would have published, with the times of the '
                              'recordings')

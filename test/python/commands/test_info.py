@@ -203,3 +203,49 @@ def test_a_reader_that_has_seen_enough_is_told_nothing(model_file: str) -> None:
                              stderr=subprocess.PIPE, text=True)
     os.close(writing)
     assert process.stderr == '' and process.returncode == 1
+
+
+def test_rates_of_a_recording_stand_beside_the_usual_ones_what_is_most_off_first(
+        model_file: str, make_bag: Any, capsys: pytest.CaptureFixture) -> None:
+    messages = [each for each in robot(3000.0, 20.0) if each[1] != '/slam']
+    messages += [(3000.0 + 0.5 * k, '/rostopic', '/cmd_vel') for k in range(1, 40)]
+    half = [each for k, each in enumerate(m for m in messages if m[1] == '/laser') if k % 2]
+    bag = make_bag('odd.bag', sorted([m for m in messages if m[1] != '/laser'] + half))
+    assert info.main([bag, '--model', model_file]) == 0
+    head, columns, *rows = capsys.readouterr().out.splitlines()
+    assert head.startswith(f'{bag}: 20.0 s') or head.startswith(f'{bag}: 19.')
+    assert columns.split() == ['component', 'topic', 'now', '[Hz]', 'usual', '[Hz]', 'ratio']
+    cells = [row.split() for row in rows]
+    assert [row[:2] for row in cells] == [['/slam', '/map'], ['/rostopic', '/cmd_vel'],
+                                          ['/laser', '/scan'], ['/battery', '/charge']]
+    slam, stranger, laser, battery = cells
+    assert slam[2] == slam[4] == '0' and slam[5:] == ['missing']
+    assert stranger[3:] == ['-', '-', 'unknown'] and 1.8 < float(stranger[2]) < 2.1
+    assert 9.5 < float(laser[2]) < 10.5 and 19.5 < float(laser[3]) < 20.5
+    assert 0.45 < float(laser[4]) < 0.55 and len(laser) == 5
+    assert 0.9 < float(battery[4]) < 1.1
+
+    assert info.main([f'{bag}@5-15', bag, '--model', model_file, '--json']) == 0
+    part, whole = json.loads(capsys.readouterr().out)['recordings']
+    assert part['duration'] == pytest.approx(10.0)
+    assert whole['topics'][0] == {'component': '/slam', 'topic': '/map', 'rate': 0.0,
+                                  'usual_rate': pytest.approx(20.0, rel=0.1), 'ratio': 0.0,
+                                  'note': 'missing'}
+    assert part['topics'][2]['rate'] == pytest.approx(10.0, rel=0.1)
+
+
+def test_rates_of_what_cannot_be_read_are_refused(model_file: str, robot_bags: Any,
+                                                  capsys: pytest.CaptureFixture) -> None:
+    assert info.main([robot_bags[0], '/gone.bag', '--model', model_file]) == 1
+    said = capsys.readouterr()
+    assert '/laser' in said.out and '/gone.bag' in said.err
+    assert info.main([robot_bags[0], '/gone.bag', '--model', model_file, '--skip-bad']) == 0
+    assert 'skipped: /gone.bag' in capsys.readouterr().err
+    assert info.main([model_file, '--model', model_file]) == 1
+    assert 'is a model, and no recording' in capsys.readouterr().err
+    assert info.main([robot_bags[0], '--model', model_file, '--tuning']) == 1
+    assert '--tuning: says nothing of rates (--model)' in capsys.readouterr().err
+    assert info.main([robot_bags[0], '--model', robot_bags[0]]) == 1
+    assert 'holds no model' in capsys.readouterr().err
+    assert info.main([robot_bags[0]]) == 1
+    assert f"info '{robot_bags[0]}' --model MODEL" in capsys.readouterr().err

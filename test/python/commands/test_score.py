@@ -161,3 +161,37 @@ def test_the_plot_is_a_picture_that_shows_the_alarm(calibrated: str, dead_laser:
     # The alarm lasts for a third of the time, nearly from top to bottom.
     assert 0.15 < (shade > pixels.shape[0] / 2).mean() < 0.45
     assert [path.name for path in tmp_path.iterdir() if 'part' in path.name] == []
+
+
+def test_scripts_see_an_alarm_by_the_exit_code(calibrated: str, dead_laser: str, model_file: str,
+                                               make_bag: Callable[..., str], capsys) -> None:
+    normal = make_bag('normal.bag', robot(7000.0))
+    assert score.main([normal, '--model', calibrated, *PAPER, '--fail']) == 0
+    assert score.main([normal, dead_laser, '--model', calibrated, *PAPER, '--fail']) == 3
+    assert 'alarms: 1' in capsys.readouterr().out
+    assert score.main([dead_laser, '/gone.bag', '--model', calibrated, *PAPER, '--fail']) == 1
+    assert score.main([dead_laser, '--model', model_file, *PAPER, '--fail']) == 1
+    assert (f'--fail: {model_file} is not calibrated, so nothing would ever be an alarm'
+            in capsys.readouterr().err)
+
+
+def test_the_report_is_opened_in_a_browser(calibrated: str, dead_laser: str, tmp_path, capsys,
+                                           monkeypatch: pytest.MonkeyPatch) -> None:
+    report = tmp_path / 'a report.html'
+    opened: List[str] = []
+    command = [dead_laser, '--model', calibrated, *PAPER, '--open']
+    monkeypatch.chdir(tmp_path)
+
+    def show(url: str) -> bool:
+        opened.append(url)
+        return report.exists()
+
+    monkeypatch.setattr('webbrowser.open', show)
+    assert score.main([*command, '--report', report.name]) == 0
+    assert opened == [report.as_uri()]
+    assert capsys.readouterr().err == ''
+    monkeypatch.setattr('webbrowser.open', lambda url: False)
+    assert score.main([*command, '--report', report.name]) == 0
+    assert 'warning: no browser was found here: copy a report.html to' in capsys.readouterr().err
+    assert score.main(command) == 1
+    assert '--open: opens the report; name it by --report FILE.html' in capsys.readouterr().err

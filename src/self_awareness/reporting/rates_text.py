@@ -1,0 +1,77 @@
+"""How often each topic came in a recording, beside how often it came in training."""
+from __future__ import annotations
+
+import math
+from collections import Counter
+from typing import Any, Dict, List, Mapping, Sequence, Tuple
+
+import numpy as np
+
+from self_awareness import EventType, TrainedModel
+from self_awareness.recordings import RecordingEvents
+from self_awareness.reporting.number_text import rounded
+from self_awareness.reporting.text_table import aligned
+from self_awareness.stamps import SECOND_NS
+
+_DIGITS = 3
+
+_Who = Tuple[str, str]  # component and topic
+
+
+def summarise(model: TrainedModel, recording: RecordingEvents) -> Dict[str, Any]:
+    """Return the rates of a recording as plain values, what is most off first.
+
+    What is off is how many times more or fewer messages came than usual. One message is added to
+    both numbers, so that a topic that comes once an hour is not the first one of each short
+    recording.
+
+    Args:
+        model: that knows what is usual.
+        recording: as the model encodes it.
+    """
+    start, end = recording.part.span(recording.origin, recording.end)
+    seconds = (end - start) / SECOND_NS
+    trained_s = sum(each.end - each.start for each in model.recordings) / SECOND_NS
+    known = len(model.event_types)
+    inside = recording.ids[(recording.stamps >= start) & (recording.stamps <= end)]
+    now = _by_topic(recording.event_types, dict(enumerate(np.bincount(inside).tolist())))
+    usual = _by_topic(model.event_types, {index: model.event_count(index)
+                                          for index in range(known)})
+    unheard = model.unheard
+    rows = []
+    for who in {*now, *usual}:
+        count, trained = now.get(who, 0), usual.get(who, 0)
+        expected = trained / trained_s * seconds if trained_s > 0.0 else 0.0
+        rows.append((-abs(math.log((count + 1.0) / (expected + 1.0))), who, {
+            'component': who[0], 'topic': who[1],
+            'rate': count / seconds if seconds > 0.0 else None,
+            'usual_rate': trained / trained_s if trained and trained_s > 0.0 else None,
+            'ratio': count / expected if expected > 0.0 else None,
+            'note': ('missing' if not count else '' if trained
+                     else 'nobody subscribed in training' if who in unheard else 'unknown')}))
+    return {'recording': str(recording.part), 'duration': seconds,
+            'topics': [row for _, _, row in sorted(rows, key=lambda row: row[:2])]}
+
+
+def lines(summary: Mapping[str, Any]) -> List[str]:
+    """Return the rates of a recording as text."""
+    rows = [[each['component'], each['topic'] if each['topic'] != each['component'] else '',
+             *(_number(each[key]) for key in ('rate', 'usual_rate', 'ratio')), each['note']]
+            for each in summary['topics']]
+    head = ['component', 'topic', 'now [Hz]', 'usual [Hz]', 'ratio', '']
+    return [f'{summary["recording"]}: {summary["duration"]:.1f} s, what is most off first',
+            *(f'  {line}' for line in aligned([head, *rows]))]
+
+
+def _by_topic(event_types: Sequence[EventType], counts: Mapping[int, int]) -> Dict[_Who, int]:
+    """Return the messages of each component on each topic, of which there are some."""
+    found: Counter = Counter()
+    for index, count in counts.items():
+        kind = event_types[index]
+        if count and not kind.tells_mode:
+            found[kind.source or kind.scope, kind.scope] += count
+    return dict(found)
+
+
+def _number(value: Any) -> str:
+    return '-' if value is None else rounded(value, _DIGITS)
