@@ -25,9 +25,14 @@ def run(*command: object, cwd: Optional[Path] = None, env: Optional[Dict[str, st
     return done.stdout
 
 
+def cpp_of_embedding_page() -> str:
+    """Return the program that the page's blocks of C++ are."""
+    return '\n'.join(re.findall(r'```cpp\n(.*?)```', EMBEDDING, re.DOTALL))
+
+
 def run_project_of_embedding_page(folder: Path, word: str, *options: str,
                                   env: Optional[Dict[str, str]] = None) -> str:
-    """Build the example by one of the CMakeLists.txt in docs/embedding.md; return what it prints.
+    """Build the page's program by one of its CMakeLists.txt; return what it prints.
 
     Args:
         folder: where to build; empty, or with what the project needs.
@@ -38,8 +43,7 @@ def run_project_of_embedding_page(folder: Path, word: str, *options: str,
     blocks = re.findall(r'```cmake\n(.*?)```', EMBEDDING, re.DOTALL)
     project, = [block for block in blocks if word in block]
     (folder / 'CMakeLists.txt').write_text(project, encoding='utf-8')
-    for name in (EXAMPLE.name, 'simulated_recording.h'):
-        (folder / name).write_bytes((EXAMPLE.parent / name).read_bytes())
+    (folder / EXAMPLE.name).write_text(cpp_of_embedding_page(), encoding='utf-8')
     run('cmake', '-S', folder, '-B', folder / 'build', *options, env=env)
     run('cmake', '--build', folder / 'build', '-j2', env=env)
     program, = [path for path in (folder / 'build').rglob(EXAMPLE.stem) if path.is_file()]

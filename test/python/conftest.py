@@ -10,7 +10,8 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple
+from typing import (Any, Callable, Dict, Iterable, Iterator, List, NamedTuple, Optional, Sequence,
+                    Tuple)
 
 import pytest
 import rosbag
@@ -25,7 +26,7 @@ Message = Tuple[float, str, str]
 
 def pytest_collection_modifyitems(items: List[pytest.Item]) -> None:
     """Start with what mostly waits: other processes run the rest meanwhile."""
-    items.sort(key=lambda item: 'test_tutorial' not in item.nodeid)
+    items.sort(key=lambda item: 'reader' not in getattr(item, 'fixturenames', ()))
 
 
 @pytest.fixture(scope='session')
@@ -36,6 +37,15 @@ def shared() -> Path:
     if not folder.is_dir():
         pytest.skip(f'no folder {folder}; set SELF_AWARENESS_SHARED to where it is')
     return folder
+
+
+@pytest.fixture
+def reader(tmp_path: Path) -> Iterator[Any]:
+    """Somebody who types what a page says; it ends all that was started."""
+    from page_reader import Reader
+    reader = Reader(tmp_path)
+    yield reader
+    reader.leave()
 
 
 def write_bag(path: Path, messages: Iterable[Message], sources: bool = True,

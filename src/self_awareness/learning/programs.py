@@ -6,7 +6,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
-from typing import Callable, Optional
+from typing import Callable, Dict, Optional
 
 import roslib.packages
 
@@ -46,6 +46,9 @@ def train_and_calibrate(division: Division, model: str, folder: str, budget: flo
         interrupted: asked from time to time whether to stop.
         add_to: the model whose training it is added to; None: it is a new one.
 
+    It also prints the commands, as they can be typed: there, the model that has no limits yet is
+    `model`, too, since the folder that it lies in is gone afterwards.
+
     Raises:
         ProgramError: one of them says why it cannot do it, or is interrupted; or there is nothing
             to calibrate on.
@@ -56,17 +59,25 @@ def train_and_calibrate(division: Division, model: str, folder: str, budget: flo
     with tempfile.TemporaryDirectory(prefix='.training', dir=folder) as temporary:
         counted = os.path.join(temporary, 'trained.model')
         base = [] if add_to is None else ['--add-to', add_to]
-        _run(interrupted, 'train', *base, *map(str, division.training), '-o', counted)
-        _run(interrupted, 'calibrate', '--model', counted,
+        named = {counted: model}
+        _run(interrupted, named, 'train', *base, *map(str, division.training), '-o', counted)
+        _run(interrupted, named, 'calibrate', '--model', counted,
              '--normal', *map(str, division.calibration), '--budget', f'{budget:g}',
              '--inject', 'crash:*', '-o', model)
 
 
-def _run(interrupted: Callable[[], bool], *command: str) -> None:
-    """Run a program; what it prints goes on to the console."""
+def _run(interrupted: Callable[[], bool], named: Dict[str, str], *command: str) -> None:
+    """Run a program; what it prints goes on to the console.
+
+    Args:
+        interrupted: whether to stop.
+        named: what the command that is printed names in place of some of its words.
+        command: the program and its arguments.
+    """
     if interrupted():
         raise ProgramError(f'{command[0]}: interrupted')
-    print(f'+ rosrun self_awareness {" ".join(map(shlex.quote, command))}', flush=True)
+    shown = ' '.join(shlex.quote(named.get(word, word)) for word in command)
+    print(f'+ rosrun self_awareness {shown}', flush=True)
     with subprocess.Popen([executable(command[0]), *command[1:]], stderr=subprocess.PIPE,
                           universal_newlines=True) as process:
         while True:

@@ -1,0 +1,49 @@
+"""docs/learn.md: its commands are typed as they are written, and the ones that they print."""
+from __future__ import annotations
+
+import random
+import re
+from pathlib import Path
+
+from conftest import wait_until
+from page_reader import BACKGROUND, Reader, blocks
+from recorded_logs import write_log
+
+from self_awareness import TrainedModel
+
+HOUR_S = 3600
+
+
+def write_hour(path: Path, start: int) -> None:
+    """Write an event log of a slow robot: what the page records in an hour."""
+    rng = random.Random(start)
+    messages = []
+    for source, topic, period in (('/base', '/odom', 1.0), ('/battery', '/charge', 3.0)):
+        stamp = start + rng.uniform(0.0, period)
+        while stamp < start + HOUR_S:
+            messages.append((stamp, source, topic))
+            stamp += period * rng.uniform(0.9, 1.1)
+    messages.append((start + HOUR_S + 1.0, '/base', '/odom'))
+    write_log(path, sorted(messages), start)
+
+
+def test_two_hours_are_learned_and_learned_again_by_the_commands_that_are_printed(
+        reader: Reader) -> None:
+    launch, reload = blocks('learn.md')
+    model = reader.folder / 'robot.model'
+    logs = reader.folder / 'robot.model.logs'
+    logs.mkdir()
+    for number in range(2):
+        write_hour(logs / f'normal_{number}.bag', HOUR_S * 3 * (number + 1))
+    reader.type(f'{BACKGROUND}\n{launch}')
+    wait_until(model.exists, f'{model}, or {reader.logs()}')
+    said = reader.folder / 'terminal0.log'
+    printed = re.findall(r'^\+ (rosrun .*)$', said.read_text(), re.MULTILINE)
+    assert [command.split()[2] for command in printed] == ['train', 'calibrate']
+    assert TrainedModel.load(str(model)).calibration.budget == 0.5
+    train, calibrate = printed
+    reader.type(train)
+    reader.type(calibrate.replace('--budget 0.5', '--budget 0.1'))
+    assert TrainedModel.load(str(model)).calibration.budget == 0.1
+    reader.type('until rosservice type /self_awareness/reload; do sleep 0.1; done')
+    assert 'success: True' in reader.type(reload)

@@ -1,0 +1,67 @@
+"""docs/accept.md: its calls are typed as they are written, while a node of the robot is dead."""
+from __future__ import annotations
+
+import random
+import re
+from typing import Any, Dict, List, Tuple
+
+import yaml
+from conftest import wait_until, write_bag
+from page_reader import BACKGROUND, Reader, blocks
+
+ID = re.compile(r'\b\d{19}\b')
+NODES = (('/camera', '/image', 12.5), ('/base', '/odom', 10.0))
+"""Name, topic and rate [Hz]."""
+
+
+def learned(reader: Reader) -> None:
+    """Write a model of the nodes, whose periods vary by 30 %."""
+    rng = random.Random(1)
+    for number in range(2):
+        messages = []
+        for source, topic, rate in NODES:
+            stamp = 1000.0 * (number + 1)
+            while stamp < 1000.0 * (number + 1) + 120.0:
+                messages.append((stamp, source, topic))
+                stamp += rng.uniform(0.7, 1.3) / rate
+        write_bag(reader.folder / f'{number}.bag', sorted(messages))
+    reader.type('rosrun self_awareness train 0.bag 1.bag -o robot.model')
+
+
+def answer(reader: Reader, call: str) -> Tuple[bool, str]:
+    """Return what a call says; too many in a row are refused for some seconds."""
+    said: List[Dict[str, Any]] = []
+
+    def is_served() -> bool:
+        said.append(yaml.safe_load(reader.type(call)))
+        return 'too many calls' not in said[-1]['message']
+
+    wait_until(is_served, call)
+    return said[-1]['success'], said[-1]['message']
+
+
+def test_what_is_normal_is_accepted_and_taken_back_as_the_page_says(reader: Reader) -> None:
+    learned(reader)
+    reader.type(f'{BACKGROUND}\nroslaunch self_awareness monitor.launch model:=robot.model')
+    for name, topic, rate in reversed(NODES):
+        reader.type(f'{BACKGROUND}\nrosrun self_awareness talker.py __name:={name[1:]} '
+                    f'_output:={topic} _rate:={rate} _variation:=0.3')
+    reader.type('rostopic echo -n 1 --filter "not m.settling and m.events > 1" '
+                '/self_awareness/status')
+    reader.kill_last()
+    alarm = re.search(r'^alarm: (\d+)$', reader.type(
+        'rostopic echo -n 1 --filter "m.level == 2" /self_awareness/alarm'), re.MULTILINE)
+    assert alarm is not None
+    first, second = blocks('accept.md')
+    ask, *accept = [ID.sub(alarm[1], call) for call in first.splitlines()]
+    done, message = answer(reader, ask)
+    assert not done and f'"{{alarm: {alarm[1]}}}" for /camera on /image (died)' in message
+    for call in accept:
+        done, message = answer(reader, call)
+        assert done and 'normal from now on' in message, call
+    ask, *undo = second.splitlines()
+    done, message = answer(reader, ask)
+    assert not done and '/rostopic_12 on /cmd_vel, /camera (slow)' in message
+    for call in undo:
+        done, message = answer(reader, call)
+        assert done and 'judged again' in message, call
