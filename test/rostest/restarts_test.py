@@ -53,8 +53,8 @@ class RestartsTest(TrainedCase):
                 self.await_heard(listener, '/driver')
                 await_condition('its rate', lambda: re.fullmatch(
                     r'[\d.]+ of 1[23](\.\d)? Hz', listener.value('/driver', '/scan') or ''), 20)
-                await_condition('the share of its limit', lambda: 0 <= float(
-                    listener.value('/base', 'share of limit') or -1) < 1, 20)
+                await_condition('the share of its limit', lambda: re.fullmatch(
+                    r'\d\d? %', listener.value('/base', 'share of limit') or ''), 20)
             seen = self.await_windows(listener, 100)
             self.assertFalse([status.message for status in listener.statuses[seen:]
                               if status.abnormal])

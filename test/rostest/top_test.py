@@ -107,7 +107,7 @@ class TopTest(MonitorCase):
                 self.assertEqual(terminal.wait(), 0)
             alarm = listener.await_alarm()
             with top() as terminal:
-                terminal.await_text('score ')
+                terminal.await_text(' % of the threshold ')
                 # If it is a death, it is asked for.
                 terminal.await_text('no model that judges by evidence', terminal.press('ay'))
             with Talker('/a'), top() as terminal:

@@ -55,6 +55,16 @@ namespace {
 constexpr char kNotWatchedAccepted[] = "not watched: accepted";
 constexpr std::size_t kMostTopics = 20;
 
+/// A share as people read it: "110 %".
+std::string percent(double share) {
+  if (std::isnan(share)) {
+    return number(share);
+  }
+  char text[320];
+  std::snprintf(text, sizeof text, "%.0f %%", 100 * share + 0.0);  // never -0
+  return text;
+}
+
 std::vector<std::string> notWatched(const CommunicationState& state) {
   std::vector<std::string> names;
   for (const core::evidence::Coverage& each : state.coverage) {
@@ -182,8 +192,12 @@ void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper&
     for (const auto& [key, list] : listsOf(state)) {
       tellList(key, list, state.lists, status);
     }
-    status.add("score", number(last.score));
-    status.add("threshold", number(last.threshold));
+    if (last.threshold < 0) {  // of the evidence detector
+      status.add("share of limit", percent(last.score / last.threshold));
+    } else {
+      status.add("score", number(last.score));
+      status.add("threshold", number(last.threshold));
+    }
     status.add("events in the window", last.events);
     status.add("unknown events in the window", last.unknown_events);
     if (last.level != DiagnosticStatus::OK) {
@@ -246,9 +260,7 @@ void tellComponent(const CommunicationState& state, const std::string& name,
   tellRates(state, name, component, status);
   const auto share = state.shares.find(name);
   if (share != state.shares.end()) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%.2g", share->second);
-    status.add("share of limit", text);
+    status.add("share of limit", percent(share->second));
   }
   const auto accepted = state.accepted_of.find(name);
   if (accepted != state.accepted_of.end()) {

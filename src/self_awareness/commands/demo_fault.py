@@ -105,7 +105,7 @@ def _report(operator: _Operator, killed_at: float) -> None:
     print(f'\nALARM on /diagnostics {seconds:.2f} s after the fault')
     print(f'  {status.name}')
     print(f'  {status.message}')
-    print(f'  score {values["score"]}, threshold {values["threshold"]}')
+    print(f'  {values["share of limit"]} of the limit')
     for key in sorted(key for key in values if key.startswith('suspect')):
         print(f'  {key}: {values[key]}')
     print()

@@ -24,6 +24,7 @@ from self_awareness.parts import BagPart, look
 from self_awareness.recordings import (RecordingEvents, in_words, unknown_modes,
                                        unknown_types)
 from self_awareness.reporting import coverage_text, csv_text
+from self_awareness.reporting.number_text import of_limit
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
 from self_awareness.reporting.report import neighbours
 from self_awareness.reporting.report.incidents import as_values, incidents, place_of
@@ -173,7 +174,7 @@ def _lines(recording: RecordingEvents, alarm: Alarm,
     end = '' if alarm.over else ' (to the end of the recording)'
     yield (f'  {level}{seconds(alarm.begin)} - {seconds(alarm.end)} s{end}, '
            f'{span(alarm.begin, alarm.end)}: '
-           f'lowest score {alarm.lowest_score:.4g}, threshold {threshold:.4g}, '
+           f'{of_limit(alarm.lowest_score, threshold)}, '
            f'{alarm.evidence or "what is left of the alarm"}')
     before_s = stopped_before_end(recording, alarm)
     if before_s is not None:

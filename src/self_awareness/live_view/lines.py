@@ -28,7 +28,8 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
                                f'{said.silent_for:.0f} s; it said: {said.message}', width))]
     if verdict is not None:
         state = 'paused' if paused else 'settling' if verdict.settling else ''
-        lines.append(('', cut(f'score {said.score:5.2f} of its limit  '
+        limit = 'threshold' if verdict.threshold > 0 else 'limit'
+        lines.append(('', cut(f'{100 * said.score:4.0f} % of the {limit}  '
                               f'{said.curve(max(width - 40, 10))}  {state}', width)))
     if said.itself:
         style = LEVELS[said.level_of_itself] if said.level_of_itself else 'faint'
@@ -69,7 +70,7 @@ def component(of: Component, width: int) -> Line:
     """Return the line of a component: events/s are those heard of those expected."""
     name = of.name if len(of.name) <= _NAME else f'{of.name[:_NAME - 1]}…'
     rate = _shown(of.rate) + ('' if of.expected is None else f'/{_shown(of.expected)}')
-    share = '-' if of.share is None else f'{min(of.share, 9.99):.0%}'
+    share = '-' if of.share is None else f'{100 * min(of.share, 9.99):.0f} %'
     state = of.message
     if of.not_watched:
         state = f'not watched: {of.not_watched}' if of.level == 0 else (

@@ -248,7 +248,7 @@ class Said:
             else _number(self._value(name, 'events a second')),
             sum(float(match[2]) for match in rates) if rates else None,
             _number(self._value(name, 'last heard [s ago]')),
-            _number(self._value(name, 'share of limit')),
+            _share(self._value(name, 'share of limit')),
             self._value(name, 'death found after [s]'), self._not_watched(name))
 
     def _not_watched(self, name: str) -> str:
@@ -285,6 +285,11 @@ def _level(status: Any) -> int:
     """Return an index in LEVELS, whatever somebody has published: bytes have a sign in rospy."""
     level = int(status.level)
     return level if 0 <= level < len(LEVELS) else LEVELS.index('STALE')
+
+
+def _share(text: str) -> Optional[float]:
+    percent = _number(text[:-2]) if text.endswith(' %') else None
+    return None if percent is None else percent / 100.0
 
 
 def _number(text: str) -> Optional[float]:

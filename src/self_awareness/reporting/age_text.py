@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import Any, Dict, List
 
 from self_awareness.learning.age import Age
+from self_awareness.reporting.number_text import percent
 from self_awareness.stamps import SECOND_NS, moment
 
 _DAY_S = 86_400.0
@@ -54,8 +55,8 @@ def _drift(age: Age) -> List[str]:
     ranked = sorted(age.drift.items(), key=lambda item: -item[1].evidence)
     for name, drift in ranked[:_MOST_LINES]:
         told = f', since sample {drift.told_by}' if drift.told_by else ''
-        text.append(f'  {drift.usual:8.0%}  {drift.last:8.0%}  {drift.evidence:8.3g}  '
-                    f'{name}{told}')
+        text.append(f'  {percent(drift.usual):>8}  {percent(drift.last):>8}  '
+                    f'{drift.evidence:8.3g}  {name}{told}')
     if len(ranked) > _MOST_LINES:
         text.append(f'  and {len(ranked) - _MOST_LINES} components with less evidence')
     return text

@@ -11,6 +11,7 @@ import numpy as np
 
 from self_awareness import Roc, RocPoint
 from self_awareness.output_files import replacing
+from self_awareness.reporting.number_text import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -141,11 +142,13 @@ def _draw_scores(axes: Axes, plot: ScorePlot) -> None:
     _mark(axes, plot, limit, unit)
     axes.set(title=_plain(plot.title), xlabel='time from the first message [s]',
              ylabel='score' if limit is None else
+             'of the limit\n(beyond 100 % is abnormal)' if limit < 0 else
              f'score in units of the limit\n(below {limit:g} is abnormal)')
     axes.margins(x=0.005)
     if limit is not None and limit < 0:
         low = float(np.nanmin(lowest)) if np.isfinite(lowest).any() else limit
         axes.set_ylim(1.05 * min(1.5 * limit, low), 0.05)
+        axes.yaxis.set_major_formatter(lambda score, _: percent(abs(score)))
     else:
         axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
     _name(axes, plot.alarms)
@@ -164,7 +167,7 @@ def _mark(axes: Axes, plot: ScorePlot, limit: Optional[float], unit: float) -> N
                   markersize=3, label='abnormal window')
     if limit is not None:
         axes.axhline(limit, color=_RED, linestyle='--', linewidth=1.3,
-                     label=f'threshold s* = {plot.threshold:.4g}')
+                     label='limit' if limit < 0 else f'threshold s* = {plot.threshold:.4g}')
 
 
 def _name(axes: Axes, alarms: Sequence[NamedAlarm]) -> None:

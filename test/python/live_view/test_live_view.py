@@ -20,7 +20,7 @@ def status(name: str, level: int = 0, message: str = 'heard', **values: str) -> 
 def of_component(name: str, level: int, rate: str, age: str) -> Any:
     return status(f'watch: {name}', level, 'heard' if level == 0 else '/t: silent for 1.2 s', **{
         'events a second': rate, 'last heard [s ago]': age, 'death found after [s]': '0.4',
-        'share of limit': '0.07', '/t': f'{rate} of 10 Hz', '/u': '5 of 2.5 Hz'})
+        'share of limit': '7 %', '/t': f'{rate} of 10 Hz', '/u': '5 of 2.5 Hz'})
 
 
 class Clock:
@@ -181,6 +181,8 @@ def test_the_curve_is_in_units_of_the_limit(said: Said) -> None:
     of.on_status(verdict(math.nan, math.nan))
     assert of.curve(10) == '▁▄██▁▁' and of.curve(2) == '▁▁'
     assert said.score == pytest.approx(0.5)
+    assert any(text.startswith('  50 % of the limit  ')
+               for _, text in lines.head(said, 80, False))
 
 
 def test_all_is_in_80_columns(said: Said) -> None:
@@ -200,7 +202,7 @@ def test_all_is_in_80_columns(said: Said) -> None:
         assert text in page
     assert '/quiet' not in page and '/laser' not in page
     rows = [re.sub(' +', ' ', text) for text in texts]
-    assert '/base 15.0/12.5 0.1 s 7% heard' in rows
+    assert '/base 15.0/12.5 0.1 s 7 % heard' in rows
     assert [each for each in rows if each.startswith('/rare 0.0 90.0 s - not watched: too few')]
     assert ('ERROR', 'WARN') == tuple(style for style, text in shown
                                       if text.startswith(('/player ', '/camera ')))

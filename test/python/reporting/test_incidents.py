@@ -34,8 +34,8 @@ def interval(start: float, end: float, suspects: Sequence[NamedSuspect] = (), le
              silence: Optional[Silence] = None, reason: str = '') -> Interval:
     of: Any = SimpleNamespace(culprit=suspects[0].component if suspects else '', kind=kind,
                               silent=None, reason=reason)
-    return Interval(of, level, start, end, '', cleared, None, -2.0, 'overdue', busy, silence,
-                    list(suspects), [])
+    return Interval(of, level, start, end, '', cleared, None, '200 % of the limit', 'overdue',
+                    busy, silence, list(suspects), [])
 
 
 def found(*listed: Interval, graph: Any = ()) -> List[Incident]:

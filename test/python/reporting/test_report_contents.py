@@ -51,7 +51,8 @@ def test_an_incident_has_its_suspects_delays_and_graph(evidence_model: str, make
     assert histogram.seen > histogram.edges[-1] > 0.05
     assert histogram.edges[0] < 0.05 < histogram.usual[1]
     assert sum(histogram.counts) == 2399  # gaps of 2400 messages
-    assert details.decided.startswith('overdue of /laser /scan std_msgs/String: 1.')
+    assert details.decided.startswith('overdue of /laser /scan std_msgs/String: 1')
+    assert details.decided.endswith(' % of its limit')
     assert details.graph.roles['/laser'] == ROOT and details.graph.roles['/slam'] == VICTIM
     assert [each.component for each in incident.silent] == ['/laser', '/slam']
     assert incident.silent[0].silence.back == pytest.approx(20.0, abs=0.1)

@@ -182,15 +182,40 @@ TEST(StatusRound, ThreeHundredTopicsTakeLessThanTwoKilobytesASecond) {
   RecordProperty("during_an_alarm", static_cast<int>(alarm.bytes_per_second));
 }
 
-/// What a status of the robot's first component says; empty: nothing.
-std::string saidOfFirst(const CommunicationState& state, const std::string& key) {
-  const DiagnosticStatus status = componentsOf(state).front();
+/// What a status says; empty: nothing.
+std::string saidIn(const DiagnosticStatus& status, const std::string& key) {
   for (const diagnostic_msgs::KeyValue& pair : status.values) {
     if (pair.key == key) {
       return pair.value;
     }
   }
   return "";
+}
+
+/// What the status of the robot's first component says.
+std::string saidOfFirst(const CommunicationState& state, const std::string& key) {
+  return saidIn(componentsOf(state).front(), key);
+}
+
+TEST(DiagnosticStatus, SaysInPercentHowNearTheLimitItCame) {
+  CommunicationState state = largeRobot();
+  EXPECT_EQ(saidOfFirst(state, "share of limit"), "12 %");
+  state.last.threshold = -1;
+  const auto said = [&](const char* key) {
+    diagnostic_updater::DiagnosticStatusWrapper status;
+    tellCommunication(state, status);
+    return saidIn(status, key);
+  };
+  for (const auto& [score, words] :
+       std::map<double, std::string>{{-1.104, "110 %"}, {0, "0 %"}, {-95.16, "9516 %"}}) {
+    state.last.score = score;
+    EXPECT_EQ(said("share of limit"), words);
+  }
+  EXPECT_EQ(said("score") + said("threshold"), "");
+  state.last.score = 0.25;
+  state.last.threshold = 0.5;  // of the paper's detector
+  EXPECT_EQ(said("score") + ", " + said("threshold"), "0.25, 0.5");
+  EXPECT_EQ(said("share of limit"), "");
 }
 
 TEST(DiagnosticStatus, SaysHowSoonADeathIsFoundAlsoWhileItIsNeeded) {

@@ -4,6 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, List, Optional, Sequence
 
+from self_awareness.reporting.number_text import percent
 from self_awareness.reporting.report.delays import Histogram, histogram_of
 from self_awareness.reporting.report.incidents import MOST_DETAILS, Incident
 from self_awareness.reporting.report.intervals import Interval
@@ -82,4 +83,4 @@ def _decided(judged: Judged, found: Overview, main: Interval) -> str:
     name = str(kinds[track.to_id])
     if track.from_id != track.to_id:
         name = f'{kinds[track.from_id]} → {name}'
-    return f'{track.channel} of {name}: {share:.2f} of its limit'
+    return f'{track.channel} of {name}: {percent(share)} of its limit'

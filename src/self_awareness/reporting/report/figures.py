@@ -10,6 +10,7 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
+from self_awareness.reporting.number_text import percent
 from self_awareness.reporting.report.delays import Histogram, seconds
 from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.intervals import ALARM, Interval
@@ -169,14 +170,16 @@ def _strip(stretches: Sequence[Tuple[str, Interval]]) -> Figure:
 def _score(timeline: Timeline) -> List[Figure]:
     x = _rounded((timeline.edges[:-1] + timeline.edges[1:]) / 2, 3)
     low, high = _clipped(timeline, timeline.lowest), _clipped(timeline, timeline.highest)
-    lowest = _numbers(timeline.lowest)
+    reached, words = timeline.lowest, 'lowest score %{customdata}'
+    if timeline.limit is not None and timeline.limit < 0:
+        reached, words = np.rint(100 * reached / timeline.limit), '%{customdata} % of the limit'
     traces: List[Figure] = [
         {'type': 'scatter', 'mode': 'lines', 'x': x, 'y': high, 'yaxis': 'y2',
          'line': {'color': GREY, 'width': 0}, 'hoverinfo': 'skip'},
         {'type': 'scatter', 'mode': 'lines', 'x': x, 'y': low, 'yaxis': 'y2',
          'line': {'color': GREY, 'width': 1}, 'fill': 'tonexty',
-         'fillcolor': 'rgba(139,147,161,0.25)', 'customdata': lowest,
-         'hovertemplate': '%{x:.1f} s: lowest score %{customdata}<extra></extra>'}]
+         'fillcolor': 'rgba(139,147,161,0.25)', 'customdata': _numbers(reached),
+         'hovertemplate': f'%{{x:.1f}} s: {words}<extra></extra>'}]
     abnormal = np.flatnonzero(timeline.abnormal)
     traces.append(
         {'type': 'scatter', 'mode': 'markers', 'x': [x[index] for index in abnormal],
@@ -190,8 +193,10 @@ def _score_axis(timeline: Timeline) -> Figure:
         return {'title': {'text': 'score'}, 'zeroline': False}
     if timeline.limit < 0:
         low = max(-SHOWN, float(np.nanmin(np.append(timeline.lowest, timeline.limit))))
-        return {'title': {'text': 'score [limits]'}, 'zeroline': False,
-                'range': [min(low, -1.5) * 1.05, timeline.limit + 0.1], 'dtick': 1}
+        ticks = list(range(-int(SHOWN), 0))
+        return {'title': {'text': 'of the limit'}, 'zeroline': False,
+                'range': [min(low, -1.5) * 1.05, timeline.limit + 0.1],
+                'tickvals': ticks, 'ticktext': [percent(-each) for each in ticks]}
     return {'title': {'text': 'score [thresholds]'}, 'zeroline': False, 'rangemode': 'tozero'}
 
 

@@ -7,6 +7,7 @@ from typing import Dict, List, Optional
 
 from self_awareness import Alarm, Suspect
 from self_awareness.calibration.heads_and_tails import stopped_before_end
+from self_awareness.reporting.number_text import of_limit
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.silences import Silence, silence_of, silence_of_all
 from self_awareness.stamps import moment
@@ -62,7 +63,7 @@ class Interval:
         moment: date and time of the start, with the time zone.
         cleared: False: it stood until the recording's end.
         began: when the trouble began, as far as the first suspect tells; None: it does not.
-        lowest: score.
+        reached: how far the score went, in words.
         evidence: channels that speak, in words.
         busy: that the machine had too much to do, in words; None: it had not.
         silence: of all, or of all on some computers, where nobody was heard; None: somebody was.
@@ -79,7 +80,7 @@ class Interval:
     moment: str
     cleared: bool
     began: Optional[float]
-    lowest: float
+    reached: str
     evidence: str
     busy: Optional[str]
     silence: Optional[Silence]
@@ -124,7 +125,8 @@ def _interval(judged: Judged, alarm: Alarm) -> Interval:
     return Interval(
         alarm, ALARM if alarm.level == 'ERROR' else SUSPICION, start,
         judged.seconds(alarm.end), moment(alarm.begin), alarm.over,
-        None if first is None else _began(first, start), alarm.lowest_score,
+        None if first is None else _began(first, start),
+        of_limit(alarm.lowest_score, judged.by.threshold),
         alarm.evidence or 'what is left of the alarm',
         alarm.busy,
         silence_of_all(judged, alarm) if alarm.kind == 'all silent' else None, suspects, later,

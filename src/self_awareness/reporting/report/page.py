@@ -4,7 +4,6 @@ from __future__ import annotations
 import base64
 import importlib.util
 import json
-import math
 import os
 import zlib
 from typing import Any, Dict, Optional, Sequence
@@ -56,7 +55,7 @@ def save_report(path: str, sections: Sequence[Section]) -> None:
             'incidents': {each.key: _drawn(each, section.details.get(each.key))
                           for each in section.incidents},
         } for section in sections]},
-        sections=sections, clock=clock, isnan=math.isnan,
+        sections=sections, clock=clock,
         draw=neighbours.draw, address=_address)
 
 
