@@ -3,6 +3,7 @@
 #include <set>
 
 #include "ros/text.h"
+#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness {
 namespace {
@@ -25,14 +26,16 @@ std::string whyNothingIsHeard(const ros1::Graph* graph, const ros1::Encoder& enc
   std::set<std::string> publishers;
   for (const auto& [topic, nodes] : graph->topics) {
     for (const std::string& node : nodes.publishers) {
-      if (topic != "/rosout" && encoder.includesTopic(topic) && !siblings.has(node)) {
+      if (topic != "/rosout" && encoder.includesTopic(topic) && !siblings.has(node) &&
+          encoder.includesSource(ros1::stableName(node))) {
         publishers.insert(node);
       }
     }
   }
-  return publishers.empty() ? "nobody publishes: is the robot started?"
-                            : std::to_string(publishers.size()) +
-                                  " nodes publish, but nothing has come that is listened to";
+  return publishers.empty()
+             ? "nobody publishes: is the robot started?"
+             : "nothing comes on what is listened to, of " + std::to_string(publishers.size()) +
+                   (publishers.size() == 1 ? " node that publishes" : " nodes that publish");
 }
 
 }  // namespace self_awareness

@@ -1,15 +1,19 @@
 #include "self_awareness/ros/live/subscriptions.h"
 
+#include <ros/network.h>
 #include <ros/transport_hints.h>
 
 #include <algorithm>
+#include <boost/asio/ip/tcp.hpp>
+#include <chrono>
 #include <iterator>
 #include <utility>
 
 #include "../now.h"
+#include "../text.h"
 #include "own_node.h"
-#include "reachable.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
@@ -39,12 +43,33 @@ std::size_t numberOfAddresses(const std::set<Publisher>& publishers) {
   return addresses.size();
 }
 
+constexpr std::chrono::milliseconds kPatience(500);
+constexpr char kNobodyListens[] = "nobody listens at its address";
+
+/// Why there is no connection to a node, as far as its machine tells. Waits for it, and for
+/// whoever knows the address of its host.
+std::string whyMissing(const std::string& uri) {
+  namespace asio = boost::asio;
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::network::splitURI(uri, host, port)) {
+    return uri.empty() ? "the master does not know where it is" : "its address is none";
+  }
+  asio::ip::tcp::iostream node;
+  node.expires_after(kPatience);
+  node.connect(host, std::to_string(port));
+  if (node.error() == asio::error::connection_refused) {
+    return kNobodyListens;
+  }
+  const bool unknown = node.error() == asio::error::host_not_found ||
+                       node.error() == asio::error::host_not_found_try_again;
+  return unknown ? "nobody knows its host " + printable(host, kLongestName) : "does not answer";
+}
+
 }  // namespace
 
 Subscriptions::Subscriptions(Arrivals& arrivals)
-    : arrivals_(arrivals), at_once_(std::make_unique<AtOnce>()) {
-  node_handle_.setCallbackQueue(at_once_.get());
-}
+    : arrivals_(arrivals), at_once_(std::make_unique<AtOnce>()) {}
 
 void Subscriptions::listen(const Listening& listening) {
   for (auto each = subscribers_.begin(); each != subscribers_.end();) {
@@ -65,7 +90,9 @@ void Subscriptions::listen(const Listening& listening) {
 void Subscriptions::subscribe(const std::string& topic) {
   using topic_tools::ShapeShifter;
   const auto name = std::make_shared<const std::string>(topic);
-  subscribers_[topic] = node_handle_.subscribe<ShapeShifter>(
+  ros::NodeHandle node_handle("", {{topic, topic}});  // what the master calls so is not remapped
+  node_handle.setCallbackQueue(at_once_.get());
+  subscribers_[topic] = node_handle.subscribe<ShapeShifter>(
       topic, kQueue,
       boost::function<void(const ros::MessageEvent<const ShapeShifter>&)>(
           [this, name](const ros::MessageEvent<const ShapeShifter>& event) {
@@ -119,9 +146,7 @@ void Subscriptions::tellAgain(const Listening& listening, std::int64_t now) {
     const auto& [topic, publisher] = each->first;
     Missing& missing = each->second;
     if (now - missing.since >= kMissing) {
-      const Reachable reachable(publisher.uri);
-      missing.why = reachable.why();
-      missing.dead = reachable.nobodyListens();
+      missing.why = whyMissing(publisher.uri);
     }
     missing.tell_at = now + missing.pause;
     missing.pause = std::min(2 * missing.pause, kLongestPause);
@@ -141,7 +166,8 @@ std::vector<Unheard> Subscriptions::missingFor3s(const std::set<std::string>& fi
   std::vector<Unheard> unheard;
   for (const auto& [publication, missing] : missing_) {
     if (now - missing.since >= kMissing) {
-      unheard.push_back({publication.second.node, publication.first, missing.why, missing.dead});
+      unheard.push_back({publication.second.node, publication.first, missing.why,
+                         missing.why == kNobodyListens});
     }
   }
   std::stable_partition(unheard.begin(), unheard.end(),

@@ -75,7 +75,6 @@ class Subscriptions {
     std::int64_t tell_at = 0;  // when roscpp is told again [ns of steady time]
     std::int64_t pause = 0;    // after that [ns]
     std::string why = "has not answered yet";
-    bool dead = false;
   };
 
   struct Shared {
@@ -91,7 +90,6 @@ class Subscriptions {
 
   Arrivals& arrivals_;
   const std::unique_ptr<ros::CallbackQueueInterface> at_once_;
-  ros::NodeHandle node_handle_;
   std::map<std::string, ros::Subscriber> subscribers_;  // by topic
   std::map<Publication, Missing> missing_;
   Guarded<Shared> shared_;
