@@ -67,7 +67,8 @@ class FakePublisher:
     def __enter__(self) -> 'FakePublisher':
         threading.Thread(target=self._serve, daemon=True).start()
         if self._answers:
-            threading.Thread(target=self._slave.serve_forever, daemon=True).start()
+            threading.Thread(target=self._slave.serve_forever, args=(0.1,),
+                             daemon=True).start()
         self._call('registerPublisher', String._type)
         return self
 
@@ -84,3 +85,23 @@ class FakePublisher:
     def _call(self, method: str, *arguments: str) -> None:
         master = ServerProxy(rosgraph.get_master_uri())
         getattr(master, method)(self._node, self._topic, *arguments, self.uri)
+
+
+class FakeTalker(FakePublisher):
+    """Publishes empty strings at 2 Hz. A test has many of them in its own process."""
+
+    def __init__(self, topic: str, node: str) -> None:
+        self._ended = threading.Event()
+        super().__init__(topic, string_header(topic, node), node)
+
+    def _say(self, connection: socket.socket) -> None:
+        super()._say(connection)
+        try:
+            while not self._ended.wait(0.5):
+                connection.sendall(struct.pack('<II', 4, 0))
+        except OSError:
+            pass  # the other side is gone
+
+    def __exit__(self, *error) -> None:
+        self._ended.set()
+        super().__exit__(*error)

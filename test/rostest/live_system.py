@@ -21,6 +21,7 @@ from std_msgs.msg import String
 
 import self_awareness
 from self_awareness.msg import SelfAwareness
+from self_awareness.status_names import task_of
 
 T = TypeVar('T')
 
@@ -220,11 +221,10 @@ class MonitorListener:
         return on_message
 
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
-        prefix = self._name[1:] + ': '
         with self._lock:
             self._diagnostics += [status for status in array.status
-                                  if status.name.startswith(prefix)]
-            if any(status.name == prefix + 'monitor' for status in array.status):
+                                  if task_of(self._name, status.name) is not None]
+            if any(task_of(self._name, status.name) == 'monitor' for status in array.status):
                 self._heartbeats.append(time.monotonic())
 
     def __enter__(self) -> 'MonitorListener':
@@ -254,7 +254,7 @@ class MonitorListener:
         """All statuses so far of one task: 'communication', 'monitor' or a component."""
         with self._lock:
             return [status for status in self._diagnostics
-                    if status.name == '{}: {}'.format(self._name[1:], task)]
+                    if task_of(self._name, status.name) == task]
 
     def value(self, task: str, key: str) -> Optional[str]:
         """A value of the task's last status; None if there is none yet."""

@@ -31,13 +31,18 @@ void CommunicationState::take(const AlarmState& alarm, const HeardReport& report
 
 DiagnosticStatuses::DiagnosticStatuses(const std::string& node, const std::string& hardware_id,
                                        std::int64_t now)
-    : prefix_(node.substr(node.find_first_not_of('/')) + ": "), hardware_id_(hardware_id) {
+    : prefix_(node.substr(node.rfind('/') + 1) + ": "), hardware_id_(hardware_id) {
+  const std::string full = node.substr(node.find_first_not_of('/'));
+  const std::size_t end = full.rfind('/');
+  if (end != std::string::npos) {
+    suffix_ = " (" + full.substr(0, end) + ")";
+  }
   message_.header.stamp = toRosTime(now);
 }
 
 void DiagnosticStatuses::add(const std::string& name, const DiagnosticStatusWrapper& status) {
   DiagnosticStatus& added = message_.status.emplace_back(status);
-  added.name = prefix_ + name;
+  added.name = prefix_ + name + suffix_;
   added.hardware_id = hardware_id_;
 }
 

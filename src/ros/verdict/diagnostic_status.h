@@ -74,10 +74,11 @@ constexpr char kNoHardware[] = "none";
 
 /// What one node publishes on /diagnostics at a time. diagnostic_updater::Updater does more: it
 /// asks the master for its period when it publishes, and throws when that, or ROS time, is at its
-/// end.
+/// end. The names of the statuses begin with the node's own name, and end with its namespace: so
+/// one beginning fits the monitors of all robots (config/diagnostic_analyzers.yaml).
 class DiagnosticStatuses {
  public:
-  /// @param node its name, which the names of the statuses begin with
+  /// @param node its full name
   /// @param now ROS time [ns]
   DiagnosticStatuses(const std::string& node, const std::string& hardware_id, std::int64_t now);
 
@@ -91,6 +92,7 @@ class DiagnosticStatuses {
 
  private:
   std::string prefix_;
+  std::string suffix_;  // empty: it is in no namespace
   std::string hardware_id_;
   diagnostic_msgs::DiagnosticArray message_;
 };
@@ -119,7 +121,7 @@ void addComponents(const CommunicationState& state, DiagnosticStatuses& statuses
 void addChosen(const DiagnosticStatuses& of_components, StatusRound& round, double elapsed,
                DiagnosticStatuses& statuses);
 /// The statuses of the whole and of every component, as a node publishes them on /diagnostics.
-/// @param node its name, which the names of the statuses begin with
+/// @param node its full name
 /// @param now ROS time [ns]
 diagnostic_msgs::DiagnosticArray toDiagnostics(const CommunicationState& state,
                                                const std::string& node, std::int64_t now);

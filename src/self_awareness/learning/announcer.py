@@ -8,6 +8,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
 from self_awareness.msg import SelfAwareness
+from self_awareness.status_names import status_name
 
 _PERIOD_S = 1.0
 
@@ -24,7 +25,7 @@ class Announcer:
         # The monitor's, which will come. By its type, other monitors know this node for one of
         # this package, whatever its name is.
         self._status_topic = rospy.Publisher('~status', SelfAwareness, queue_size=1)
-        self._name = f'{rospy.get_name()[1:]}: communication'
+        self._name = status_name(rospy.get_name(), 'communication')
         self._hardware_id = str(rospy.get_param('~hardware_id', 'none'))
         self._lock = threading.Lock()
         self._status = DiagnosticStatus()  # Guarded by _lock.

@@ -8,6 +8,8 @@ from collections import deque
 from dataclasses import dataclass
 from typing import Any, Callable, Deque, Dict, List, Mapping, Optional, Tuple
 
+from self_awareness.status_names import task_of
+
 LEVELS = ('OK', 'WARN', 'ERROR', 'STALE')
 """As of diagnostic_msgs/DiagnosticStatus."""
 SORTS = ('level', 'name', 'rate', 'age', 'limit')
@@ -72,7 +74,7 @@ class Said:
         self._all_mutes = 0
         self.heard_at: Optional[float] = None
         """When the monitor said something last; None: it has not."""
-        self._prefix = f'{monitor.lstrip("/")}: '
+        self._monitor = monitor
         self._statuses: Dict[str, Any] = {}
         self._scores: Deque[float] = deque(maxlen=_LONGEST_CURVE)
         self.verdict: Any = None
@@ -89,8 +91,8 @@ class Said:
 
     def on_diagnostics(self, array: Any) -> None:
         """Take in a DiagnosticArray: what others say is left out."""
-        told = {status.name[len(self._prefix):]: status for status in array.status
-                if status.name.startswith(self._prefix)}
+        of_all = ((task_of(self._monitor, status.name), status) for status in array.status)
+        told = {task: status for task, status in of_all if task is not None}
         if not told:
             return
         now = self.heard_at = self._clock()

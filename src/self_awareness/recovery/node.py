@@ -21,6 +21,7 @@ from self_awareness.recovery.watch import Watch
 from self_awareness.recovery.xml_rpc import NoAnswer
 from self_awareness.srv import Maintenance, MaintenanceRequest, MaintenanceResponse
 from self_awareness.stamps import SECOND_NS, nanoseconds, to_the_second
+from self_awareness.status_names import status_name
 
 LONGEST_HOLD_S = 86400.0
 _TICK_S = 0.1
@@ -190,7 +191,7 @@ class Recovery:
         array.header.stamp = rospy.Time.now()
         shown = words.values(self._history.actions, self._actions.refused(), self._rules.dry_run)
         array.status = [DiagnosticStatus(
-            said[0], f'{rospy.get_name()[1:]}: recovery', said[1], self._hardware_id,
+            said[0], status_name(rospy.get_name(), 'recovery'), said[1], self._hardware_id,
             [KeyValue(key, value) for key, value in shown.items()])]
         self._diagnostics.publish(array)
 
