@@ -34,7 +34,11 @@ trap - INT TERM  # from here on, a signal ends this at once
 if [ -n "$ending" ] || { [ "$code" -ne 1 ] && [ "$code" -ne 2 ]; }; then
   exit "$code"
 fi
-echo "${1##*/} cannot use its arguments or parameters (see above), and is not started again: end roslaunch, correct them, launch it again" >&2
+name=${1##*/}
+for word; do
+  [[ $word != __name:=* ]] || name=${word#*:=}
+done
+echo "$name cannot run (see above), and is not started again: end roslaunch, correct that, launch it again" >&2
 # Not by a program: a signal that comes while bash gives its place to one would be lost.
 exec {nothing}<> <(:)
 read -r -u "$nothing"

@@ -77,9 +77,9 @@ def test_rosrun_offers_programs_and_nothing_of_the_developers(installed: Dict[st
     offered = {path.name for folder in folders for path in Path(folder).rglob('*')
                if path.is_file() and os.access(path, os.X_OK)}
     assert offered == {'calibrate', 'component', 'convert', 'diff', 'incidents', 'induce', 'info',
-                       'learn', 'learn_more', 'merge', 'record_events', 'record_graph',
-                       'recovery.py', 'score', 'self_awareness_node', 'simulate', 'top',
-                       'train'}
+                       'learn', 'learn_more', 'merge', 'only_one', 'record_events',
+                       'record_graph', 'recovery.py', 'score', 'self_awareness_node',
+                       'simulate', 'top', 'train'}
 
 
 def test_no_text_that_is_installed_names_the_workspace(installed: Dict[str, str],

@@ -45,10 +45,10 @@ def test_every_argument_says_what_it_is(path: Path) -> None:
 def test_a_relative_path_means_the_folder_of_who_launches(given: str, meant: str,
                                                           tmp_path: Path) -> None:
     meant = meant.format(cwd=tmp_path, home=Path.home())
-    for file in ('monitor.launch', 'learn.launch'):
-        assert _parameters(tmp_path, file, f'model:={given}')['/self_awareness/model'] == meant
-    nodelet = _parameters(tmp_path, 'monitor.launch', f'model:={given}', 'standalone:=false')
-    assert nodelet['/self_awareness/model'] == meant
+    for launched in (('monitor.launch',), ('learn.launch',),
+                     ('monitor.launch', 'standalone:=false')):
+        parameters = _parameters(tmp_path, *launched, f'model:={given}')
+        assert [parameters[name] for name in parameters if name.endswith('/model')] == [meant]
     recorder = _parameters(tmp_path, 'record.launch', f'output:={given}')
     assert recorder['/recorder/output'] == meant
 
@@ -59,6 +59,14 @@ def test_logs_and_encoding_of_the_learner_are_relative_to_the_same_folder(tmp_pa
     words = done.stdout.split()
     assert words[words.index('--logs') + 1].strip("'") == f'{tmp_path}/r.model.logs'
     assert words[words.index('--encoding') + 1].strip("'") == f'{tmp_path}/e.yaml'
+
+
+@pytest.mark.parametrize('launched', [
+    ('monitor.launch',), ('monitor.launch', 'standalone:=false'), ('learn.launch',)])
+def test_no_launch_sets_parameters_of_a_monitor_that_runs(launched: Tuple[str, ...]) -> None:
+    names = [name for _ in range(2) for name in _parameters(ROOT, *launched)]
+    assert len(names) == len(set(names)) > 0
+    assert [name for name in names if name.startswith('/self_awareness/')] == []
 
 
 @pytest.mark.parametrize('what, node', [('events', '/recorder'), ('event', '/recorder'),
@@ -116,7 +124,7 @@ def test_a_node_that_refuses_its_parameters_is_not_started_again(code: int, numb
     refuses = f'echo "~alarm_of: must be at least 1" >&2; exit {code}'
     with _prefixed('bash', '-c', refuses) as node:
         assert node.stderr.readline() == '~alarm_of: must be at least 1\n'
-        assert 'cannot use its arguments or parameters' in node.stderr.readline()
+        assert 'bash cannot run (see above), and is not started again' in node.stderr.readline()
         assert node.poll() is None
         os.killpg(node.pid, number)
         assert node.wait(LONG_S) == -number

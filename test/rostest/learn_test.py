@@ -119,7 +119,7 @@ class LearnTest(unittest.TestCase):
 
     def check_told_once(self, why: str, *arguments: str) -> None:
         """What a learner is launched with is refused, and roslaunch does not start it again."""
-        waits = 'learn cannot use its arguments or parameters (see above)'
+        waits = 'self_awareness cannot run (see above), and is not started again'
         with Process('roslaunch', 'self_awareness', 'learn.launch', 'model:=' + self.model,
                      *arguments) as process:
             await_condition(waits, lambda: waits in process.output, 60)

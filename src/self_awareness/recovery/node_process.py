@@ -121,6 +121,22 @@ def process_of(node: str, pid: int) -> NodeProcess:
     return NodeProcess(pid, int(found[_START]))
 
 
+def begun(pid: int) -> Optional[float]:
+    """Return when a process was started [s since 1970]; None: there is none."""
+    found = _stat(pid)
+    if found is None:
+        return None
+    boot = re.search(r'^btime (\d+)$', (PROC / 'stat').read_text(), re.MULTILINE)
+    ticks = int(found[_START]) / os.sysconf('SC_CLK_TCK')
+    return None if boot is None else int(boot.group(1)) + ticks
+
+
+def has_another_name(pid: int, node: str) -> bool:
+    """Return whether a process is another node, by the name that it was started with."""
+    names = [word for word in _command_line(pid) if word.startswith('__name:=')]
+    return bool(names) and f'__name:={node.rsplit("/", 1)[-1]}' not in names
+
+
 def line_of(pid: int) -> Set[int]:
     """Return a process, and those that it was started by, one by the other."""
     line: Set[int] = set()

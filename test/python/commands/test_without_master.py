@@ -38,7 +38,8 @@ def _take_sigint() -> None:
 
 # 0: rospy has not ended its threads in time, and so the process is ended (leaving.py).
 @pytest.mark.parametrize('program, words, codes', [('component', ['player'], (130,)),
-                                                   ('learn', [], (0, 130))])
+                                                   ('learn', [], (0, 130)),
+                                                   ('only_one', ['learn', '__name:=x'], (130,))])
 def test_ctrl_c_ends_who_waits_for_it_without_a_traceback(program: str, words: Sequence[str],
                                                           codes: Sequence[int]) -> None:
     with _started(program, *words) as process:
