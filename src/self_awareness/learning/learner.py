@@ -17,8 +17,10 @@ from self_awareness.learning.announcer import Announcer
 from self_awareness.learning.division import divide
 from self_awareness.learning.logs import LogFolder
 from self_awareness.learning.recorder import Recorder
+from self_awareness.learning.silence import HEARD_S, ask_why
 
 _PERIOD_S = 1.0
+_NOBODY_S = 3.0  # nothing was heard at all: who starts has been seen by then
 _MORE = 1.5
 _LEAST_MORE_H = 1.0 / 60.0
 
@@ -30,7 +32,8 @@ class Plan:
     Args:
         model: file to write.
         logs: folder of the event logs.
-        hours: of recordings to learn from, those that are there included.
+        hours: of recordings to learn from, those that are there included; time in which nobody is
+            heard does not count.
         start_up: left out after each start of the robot [s].
         budget: false alarms an hour that the limits allow.
         encoding: how messages become events.
@@ -59,6 +62,7 @@ class Learner:
         self._folder = LogFolder(plan.logs, plan.encoding)
         self._announcer = Announcer()
         self._problem = ''  # why the last attempt failed
+        self._silence = ''  # why nothing is heard
         self._recorder: Optional[Recorder] = None
         self._robot_start = time.time()
         self._starts_before = 0
@@ -109,12 +113,24 @@ class Learner:
             if hours >= self._wanted:
                 return
             progress = self._progress(hours, max(starts, self._folder.starts))
+            self._hear(recorder)
             self._say_progress(progress, recorder.problem)
             tenths = int(10.0 * hours / self._wanted)
             if tenths > told:
                 told = tenths
                 rospy.loginfo(progress)
             self._finish.wait(_PERIOD_S)
+
+    def _hear(self, recorder: Recorder) -> None:
+        """Say it when nothing is heard, and why, once for each reason; and when it is over."""
+        before, self._silence = self._silence, ''
+        longest = HEARD_S if recorder.events else _NOBODY_S
+        if not recorder.problem and recorder.silent_for() > longest:
+            self._silence = ask_why(self._plan.encoding, self._plan.subscribe)
+            if self._silence != before:
+                rospy.logwarn('nothing is heard, so this time does not count: %s', self._silence)
+        elif before and not recorder.problem:
+            rospy.loginfo('the robot is heard')
 
     def _train(self) -> bool:
         """Learn from what there is; return False, and want more, if that is not enough."""
@@ -147,6 +163,9 @@ class Learner:
         if self._problem:
             level = DiagnosticStatus.WARN
             progress += f'; the last attempt failed: {self._problem}'
+        if self._silence:
+            level = DiagnosticStatus.WARN
+            progress = f'nothing is heard: {self._silence}; {progress}'
         if problem:
             level = DiagnosticStatus.ERROR
             progress = f'{problem}; {progress}'

@@ -9,10 +9,12 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Dict, Iterator, List
 
+import numpy as np
 import rosbag
 
 from self_awareness import (BagError, EncodingRules, read_events, recordings_in_event_log,
                             summarise_bag)
+from self_awareness.learning.silence import HEARD_S
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 
@@ -30,11 +32,13 @@ class Log:
         part: the whole recording.
         seconds: its length.
         robot_start: when the robot was started [ns].
+        heard: for how long the robot was heard [s].
     """
 
     part: BagPart
     seconds: float
     robot_start: int
+    heard: float = 0.0
 
 
 class LogFolder:
@@ -58,8 +62,8 @@ class LogFolder:
 
     @property
     def hours(self) -> float:
-        """Length of all recordings."""
-        return sum(log.seconds for log in self.logs) / 3600.0
+        """For how long the robot was heard in all recordings."""
+        return sum(log.heard for log in self.logs) / 3600.0
 
     @property
     def starts(self) -> int:
@@ -107,7 +111,10 @@ class LogFolder:
         return problems
 
     def _read(self, path: str) -> List[Log]:
-        """Return the recordings of a file, all of which was read: a part may be damaged."""
+        """Return the recordings of a file in which somebody was heard.
+
+        All of it is read: a part may be damaged.
+        """
         number = recordings_in_event_log(path)
         if number is None:
             summarise_bag(path)  # says what is wrong with the file, if it is that
@@ -117,9 +124,12 @@ class LogFolder:
             summary = summarise_bag(path, recording)
             if summary.encoding != self._encoding:
                 raise BagError(f'{path}: was recorded by another encoding')
-            read_events(path, self._encoding, recording=recording)
-            logs.append(Log(BagPart(path, recording=recording, alone=number == 1),
-                            (summary.end - summary.start) / SECOND_NS, summary.robot_start))
+            stamps = read_events(path, self._encoding, recording=recording).stamps
+            if len(stamps):
+                silences = np.diff(np.append(stamps, summary.end)) / SECOND_NS
+                logs.append(Log(BagPart(path, recording=recording, alone=number == 1),
+                                (summary.end - summary.start) / SECOND_NS, summary.robot_start,
+                                float(np.clip(silences, 0.0, HEARD_S).sum())))
         return logs
 
 

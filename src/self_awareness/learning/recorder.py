@@ -14,6 +14,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 from self_awareness import EncodingRules, encoding_file
 from self_awareness.learning.programs import executable
+from self_awareness.learning.silence import HEARD_S
 
 _END_S = 30.0  # to write the last file
 _REFUSED = 1
@@ -44,7 +45,10 @@ class Recorder:
         self._problem = ''
         self._process: Optional[subprocess.Popen] = None
         self._file = ''  # that is written
-        self._began = 0.0  # the file [s of time.monotonic()]
+        self._heard = 0.0  # for how long, since the file began [s]
+        self._events = 0  # so far
+        # [s of time.monotonic()]
+        self._looked_at = self._event_at = time.monotonic()
 
     def __enter__(self) -> Recorder:
         # Its diagnostics go through this node's: a name that nobody beats for any more would
@@ -77,16 +81,29 @@ class Recorder:
         """Why nothing is recorded, in its words; empty: it is, or has said nothing yet."""
         return self._problem
 
+    @property
+    def events(self) -> int:
+        """How many it has heard."""
+        return self._events
+
+    def silent_for(self) -> float:
+        """Return for how long it has heard nothing [s]."""
+        return time.monotonic() - self._event_at
+
     def seconds(self) -> float:
-        """Return for how long the file that is not complete yet has been written [s].
+        """Return for how long the robot was heard, for the file that is not complete yet [s].
 
         Call it often: a file is taken to begin when it is seen for the first time.
         """
         files = sorted(glob.glob(f'{glob.escape(self._prefix)}*.bag.active'))
         newest = files[-1] if files else ''
+        now = time.monotonic()
         if newest != self._file:
-            self._file, self._began = newest, time.monotonic()
-        return time.monotonic() - self._began if newest else 0.0
+            self._file, self._heard = newest, 0.0
+        elif newest and self._events and self.silent_for() <= HEARD_S:
+            self._heard += now - self._looked_at
+        self._looked_at = now
+        return self._heard
 
     def ended(self) -> bool:
         """Return whether it was told to end.
@@ -105,3 +122,6 @@ class Recorder:
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
         for status in array.status:
             self._problem = '' if status.level == DiagnosticStatus.OK else status.message
+            events = next((int(pair.value) for pair in status.values if pair.key == 'events'), 0)
+            if events > self._events:
+                self._events, self._event_at = events, time.monotonic()

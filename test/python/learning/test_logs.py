@@ -10,6 +10,7 @@ from recorded_logs import write_log
 from self_awareness import EncodingRules, read_events
 from self_awareness.learning import logs
 from self_awareness.learning.logs import LogFolder
+from self_awareness.learning.silence import HEARD_S
 
 RULES = EncodingRules.defaults()
 
@@ -30,6 +31,17 @@ def test_hours_and_starts_are_those_of_the_recordings(tmp_path: Path) -> None:
     write_log(tmp_path / 'd.bag', robot(2000.0, 60.0), 9)
     assert found.look() == []
     assert found.starts == 3
+
+
+def test_time_in_which_nobody_is_heard_does_not_count(tmp_path: Path) -> None:
+    write_log(tmp_path / 'a.bag', [*robot(1000.0, 60.0), *robot(1600.0, 60.0)], 7)
+    write_log(tmp_path / 'b.bag', [(stamp, '/play_7', topic)
+                                   for stamp, _, topic in robot(1000.0, 60.0)], 8)
+    found = folder(tmp_path)
+    assert found.look() == []
+    assert found.hours == pytest.approx((120.0 + HEARD_S) / 3600.0, rel=0.01)
+    assert found.starts == 1
+    assert [log.seconds for log in found.logs] == pytest.approx([660.0], rel=0.01)
 
 
 def test_what_a_crash_left_behind_is_mended(tmp_path: Path) -> None:

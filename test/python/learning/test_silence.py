@@ -1,0 +1,45 @@
+"""What a learner says that hears nothing."""
+from __future__ import annotations
+
+from typing import Dict, List
+
+import pytest
+
+from self_awareness import EncodingRules
+from self_awareness.learning.silence import why
+
+TYPES = {'/self_awareness/status': 'self_awareness/SelfAwareness'}
+OURS = {'/self_awareness/status': ['/watch'], '/extra': ['/watch'],
+        '/rosout': ['/watch', '/play_7'], '/clock': ['/play_7'],
+        '/diagnostics': ['/watch']}
+NO_ROBOT = 'no node of a robot publishes anything'
+PLAYER = ('/play_7 plays 2 topics; players are left out: use `score BAG` or `train BAG`, or '
+          '`source: none` in the encoding')
+
+
+@pytest.mark.parametrize('published, subscribed, subscribe, said', [
+    ({}, {}, 'used', NO_ROBOT),
+    ({}, {'/scan': ['/slam']}, 'all', NO_ROBOT),
+    ({'/a': ['/record_1511950934432423433'], '/b': ['/rqt_plot']}, {}, 'all', NO_ROBOT),
+    ({'/a': ['/play_7'], '/b': ['/play_7']}, {'/a': ['/slam']}, 'used', PLAYER),
+    ({'/scan': ['/lidar'], '/a': ['/play_7']}, {}, 'used',
+     'no node of the robot subscribes to /scan; launch it with subscribe:=all to listen all the '
+     'same'),
+    ({'/scan': ['/lidar']}, {'/scan': ['/watch', '/rqt_plot']}, 'used',
+     'no node of the robot subscribes to /scan; launch it with subscribe:=all to listen all the '
+     'same'),
+    ({'/scan': ['/lidar']}, {}, 'all', 'nothing is sent on /scan'),
+    ({'/scan': ['/lidar'], '/tf': ['/lidar'], '/x': ['/y']},
+     {'/scan': ['/slam'], '/tf': ['/slam']}, 'used', 'nothing is sent on /scan and 1 more'),
+])
+def test_why(published: Dict[str, List[str]], subscribed: Dict[str, List[str]], subscribe: str,
+             said: str) -> None:
+    assert why({**OURS, **published}.items(), subscribed.items(), TYPES, EncodingRules.defaults(),
+               subscribe) == said
+
+
+def test_with_source_none_a_player_is_the_robot() -> None:
+    encoding = EncodingRules.defaults()
+    encoding.source = 'none'
+    assert why({**OURS, '/a': ['/play_7']}.items(), (), TYPES, encoding, 'all'
+               ) == 'nothing is sent on /a'

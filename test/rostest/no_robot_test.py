@@ -1,0 +1,74 @@
+#!/usr/bin/python3
+"""learn.launch without a robot: it says why it hears nothing, and counts only what it hears."""
+
+import glob
+import os
+import re
+import shutil
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from live_system import MonitorListener, Process, again_if_disturbed, await_condition, operation, \
+    write_bag
+from monitor_case import Talker
+
+NO_ROBOT = 'nothing is heard: no node of a robot publishes anything; learning: 0.0 min of 3.0 min'
+PLAYS = re.compile(r'nothing is heard: /play_\d+ plays 3 topics; players are left out: use `score '
+                   r'BAG` or `train BAG`, or `source: none` in the encoding; learning: 0\.0 min')
+SILENT = 'nothing is heard: nothing is sent on /scan; learning: '
+
+
+def minutes(status: DiagnosticStatus) -> float:
+    return float(re.search(r'learning: ([0-9.]+) min of 3\.0 min', status.message).group(1))
+
+
+class NoRobotTest(unittest.TestCase):
+
+    def setUp(self) -> None:
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def path(self, name: str) -> str:
+        return os.path.join(self.folder, name)
+
+    @again_if_disturbed
+    def test_what_is_not_heard_is_told_and_does_not_count(self) -> None:
+        bag = write_bag(self.path('robot.bag'), operation(
+            [('/lidar', '/a', 0.1), ('/slam', '/b', 0.1), ('/base', '/c', 0.1)], 60, 1))
+
+        def last() -> DiagnosticStatus:
+            statuses = listener.diagnostics('communication')
+            return statuses[-1] if statuses else DiagnosticStatus()
+
+        with MonitorListener() as listener, Process(
+                'roslaunch', 'self_awareness', 'learn.launch', 'model:=' + self.path('model'),
+                'hours:=0.05', 'subscribe:=all') as process:
+            await_condition('no robot', lambda: last().message.startswith(NO_ROBOT), 60)
+            self.assertEqual(last().level, DiagnosticStatus.WARN)
+            with Process('rosbag', 'play', '--loop', '--quiet', bag):
+                await_condition('a player', lambda: PLAYS.match(last().message), 30)
+                self.assertEqual(last().level, DiagnosticStatus.WARN)
+                await_condition('a log', lambda: glob.glob(self.path('model.logs/*.active')), 30)
+            with Talker('/scan') as talker:
+                await_condition('it counts', lambda: last().level == DiagnosticStatus.OK
+                                and minutes(last()) > 0.1, 60)
+                self.assertIn('the robot is heard', process.output)
+                talker.stop()
+                await_condition('silence', lambda: last().message.startswith(SILENT), 30)
+                counted, seen = minutes(last()), len(listener.diagnostics('communication'))
+                await_condition('8 s more', lambda: len(
+                    listener.diagnostics('communication')) > seen + 8, 30)
+                self.assertEqual(minutes(last()), counted)
+            for why in (NO_ROBOT, '/play_', SILENT):
+                said = 'does not count: ' + why.replace('nothing is heard: ', '').split(';')[0]
+                self.assertGreaterEqual(process.output.count(said), 1, said)
+            self.assertLess(process.output.count('nothing is heard'), 8, process.output)
+
+
+if __name__ == '__main__':
+    rospy.init_node('no_robot_test')
+    rostest.rosrun('self_awareness', 'no_robot', NoRobotTest)
