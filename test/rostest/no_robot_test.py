@@ -1,12 +1,8 @@
 #!/usr/bin/python3
-"""learn.launch without a robot: it says why it hears nothing, and counts only what it hears."""
+"""Without a robot, learn.launch and the monitor say why they hear nothing; no such time counts."""
 
 import glob
-import os
 import re
-import shutil
-import tempfile
-import unittest
 
 import rospy
 import rostest
@@ -14,7 +10,8 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import MonitorListener, Process, again_if_disturbed, await_condition, operation, \
     write_bag
-from monitor_case import Talker
+from monitor_case import MonitorCase, Talker
+from self_awareness.msg import Components
 
 NO_ROBOT = 'nothing is heard: no node of a robot publishes anything; learning: 0.0 min of 3.0 min'
 PLAYS = re.compile(r'nothing is heard: /play_\d+ plays 3 topics; players are left out: use `score '
@@ -26,19 +23,32 @@ def minutes(status: DiagnosticStatus) -> float:
     return float(re.search(r'learning: ([0-9.]+) min of 3\.0 min', status.message).group(1))
 
 
-class NoRobotTest(unittest.TestCase):
+class NoRobotTest(MonitorCase):
 
-    def setUp(self) -> None:
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+    def bag(self) -> str:
+        return write_bag(self.path('robot.bag'), operation(
+            [('/lidar', '/a', 0.1), ('/slam', '/b', 0.1), ('/base', '/c', 0.1)], 60, 1))
 
-    def path(self, name: str) -> str:
-        return os.path.join(self.folder, name)
+    @again_if_disturbed
+    def test_a_monitor_beside_a_player_names_it(self) -> None:
+        with self.monitor(self.model(sources={'/a': '/lidar'})), MonitorListener() as listener, \
+                Process('rosbag', 'play', '--loop', '--quiet', self.bag()):
+            said = await_condition('the player is named', lambda: next(
+                (status for status in listener.diagnostics('communication')
+                 if ' plays 3 topics; players are left out: use `score BAG`' in status.message),
+                None), 40)
+            self.assertEqual(said.level, DiagnosticStatus.WARN)
+            self.assertRegex(said.message, r'nothing has been heard for 1\d s: /play_\d+ plays')
+            components = {each.name: each for each in rospy.wait_for_message(
+                '/self_awareness/components', Components, 20).components}
+            self.assertEqual(components['/lidar'].state, 'not heard yet')
+            # This process looks at the monitor: it is in the graph, and nobody is unlisted.
+            self.assertEqual(components[rospy.get_name()].not_watched,
+                             'it publishes nothing that is listened to')
 
     @again_if_disturbed
     def test_what_is_not_heard_is_told_and_does_not_count(self) -> None:
-        bag = write_bag(self.path('robot.bag'), operation(
-            [('/lidar', '/a', 0.1), ('/slam', '/b', 0.1), ('/base', '/c', 0.1)], 60, 1))
+        bag = self.bag()
 
         def last() -> DiagnosticStatus:
             statuses = listener.diagnostics('communication')

@@ -239,11 +239,14 @@ def _graph(summary: Dict[str, Any]) -> str:
         return ('none: roots are told from victims by the training alone (record.launch writes '
                 'it down, or train --graph)')
     publishers = {edge['publisher'] for edge in graph}
+    silent = sorted({edge['subscriber'] for edge in graph}
+                    - {kind['source'] for kind in summary['event_types']})
     nodes = Counter(summary['hosts'].values())
     del nodes['']  # who runs on several
     hosts = ', '.join(f'{host} ({number})' for host, number in sorted(nodes.items()))
     return (f'sources that somebody listens to: {len(publishers)}, connections: {len(graph)}'
-            + (f'; hosts and their nodes: {hosts}' if hosts else ''))
+            + (f'; hosts and their nodes: {hosts}' if hosts else '')
+            + (f'; not watched, since they publish nothing: {", ".join(silent)}' if silent else ''))
 
 
 def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:

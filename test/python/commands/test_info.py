@@ -95,7 +95,9 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
     assert calibration['false_alarms_per_hour'] == TrainedModel.load(
         output).calibration.false_alarms_per_hour >= 0.0
     assert info.main([output]) == 0
-    assert 'sources that somebody listens to: 1, connections: 2' in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert 'sources that somebody listens to: 1, connections: 2' in printed
+    assert 'not watched, since they publish nothing: /map_saver' in printed
 
 
 def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path, capsys) -> None:
