@@ -155,7 +155,9 @@ void Subscriptions::tellAgain(const Listening& listening, std::int64_t now) {
   for (const std::string& topic : topics) {
     std::set<std::string> uris;
     for (const Publisher& publisher : listening.topics.at(topic)) {
-      uris.insert(publisher.uri);
+      if (!publisher.uri.empty()) {
+        uris.insert(publisher.uri);
+      }
     }
     tellPublishers(topic, uris);
   }
