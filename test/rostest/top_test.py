@@ -99,8 +99,11 @@ class TopTest(MonitorCase):
                 terminal.await_text('(by name) ', drawn)
                 terminal.await_text(rospy.get_name() + ' ', drawn)
                 drawn = terminal.press('m')
+                terminal.await_text('mute {} for 10 minutes?'.format(rospy.get_name()), drawn)
+                drawn = terminal.press('y')
                 terminal.await_text('not told until', drawn)
                 terminal.await_text('muted: {} until'.format(rospy.get_name()), drawn)
+                terminal.await_text('told again: ' + rospy.get_name(), terminal.press('u'))
                 terminal.await_text('nothing stands, and nobody is new', terminal.press('a'))
                 terminal.await_text('the last ', terminal.press('d'))
                 terminal.press('q')
@@ -118,6 +121,15 @@ class TopTest(MonitorCase):
                 terminal.await_text('the alarm is cleared', terminal.press('c'))
                 await_condition('it is cleared', lambda: (
                     listener.alarms[-1].level == SelfAwareness.OK), 20)
+
+    @again_if_disturbed
+    def test_it_shows_who_is_not_heard_yet_and_whom_nobody_watches(self) -> None:
+        model = self.model(topics=['/a', '/late'], sources={'/late': '/late'})
+        with self.monitor(model), Talker('/a'), top() as terminal, Process(
+                'rosrun', 'topic_tools', 'relay', '/a', '/relayed', '__name:=relay'):
+            terminal.await_text('1 of 2 heard so far')
+            terminal.await_text('/relay ')
+            terminal.await_text('not watched: training never')
 
     @again_if_disturbed
     def test_a_monitor_that_hangs_is_stale_and_keys_go_on(self) -> None:

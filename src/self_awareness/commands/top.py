@@ -5,7 +5,7 @@ import argparse
 import copy
 import sys
 import threading
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Optional, Sequence
 
 import rosgraph
 import rospy
@@ -14,14 +14,15 @@ from std_srvs.srv import Trigger
 
 from self_awareness.commands import cli
 from self_awareness.live_view.said import Said
-from self_awareness.msg import Acceptance, Incidents, SelfAwareness
+from self_awareness.msg import Acceptance, Components, Incidents, SelfAwareness
 from self_awareness.srv import Accept, Mute
 
 _EPILOG = """\
 Keys: q quit, s sort by another column, f filter by a part of the name, p pause, m mute the
-selected component for 10 minutes, a accept what stands, or, if nothing does, who is new (after
-y), c clear the alarm, d write the flight recorder's file. 80 columns are enough. A monitor that
-was not heard for 5 s is STALE. It ends when the master is gone.
+selected component for 10 minutes (after y), u take the last mute back, a accept what stands, or,
+if nothing does, who is new (after y), c clear the alarm, d write the flight recorder's file. 80
+columns are enough. A monitor that was not heard for 5 s is STALE. It ends when the master is
+gone.
 """
 
 _MASTER_EVERY_S = 1.0
@@ -70,6 +71,7 @@ class _Listener:
         for topic, kind, take in (
                 (f'{monitor}/status', SelfAwareness, self._said.on_status),
                 (f'{monitor}/incidents', Incidents, self._said.on_incidents),
+                (f'{monitor}/components', Components, self._said.on_components),
                 ('/diagnostics', DiagnosticArray, self._said.on_diagnostics)):
             rospy.Subscriber(topic, kind, self._locked(take))
         threading.Thread(target=self._watch, daemon=True).start()
@@ -105,12 +107,9 @@ def _calls(monitor: str) -> Dict[str, Callable[..., str]]:
         return str(rospy.ServiceProxy(f'{monitor}/mute', Mute)(
             component=component, duration=duration).message)
 
-    def accept(alarm: int, strangers: List[Tuple[str, str]]) -> str:
+    def accept(alarm: int, strangers: List[Acceptance]) -> str:
         call = rospy.ServiceProxy(f'{monitor}/accept', Accept)
-        asked: Dict[str, Any] = {'alarm': alarm} if alarm else {'more': [
-            Acceptance(component=source, topic=topic, kind='stranger')
-            for source, topic in strangers]}
-        return str(call(**asked).message)
+        return str((call(alarm=alarm) if alarm else call(more=strangers)).message)
 
     def answered(call: Callable[..., str]) -> Callable[..., str]:
         def answer(*arguments: Any) -> str:

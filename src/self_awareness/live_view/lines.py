@@ -1,10 +1,10 @@
 """What `top` shows, as lines of a width, each with a style."""
 from __future__ import annotations
 
-from typing import Any, List, Optional, Tuple
+from typing import Any, List, Tuple
 
 from self_awareness import printable
-from self_awareness.live_view.said import LEVELS, STALE_S, Component, Said
+from self_awareness.live_view.said import LEVELS, STALE_S, Said, is_unknown, level_of
 
 Line = Tuple[str, str]
 """A style (one of LEVELS, head, faint, or none) and a text."""
@@ -13,6 +13,7 @@ _MOST_INCIDENTS = 5
 _MOST_MUTES = 3
 _NAME = 24
 _WIDE = 100  # columns, for one column more
+_PLAIN = ('heard', 'not heard yet', 'in the graph')  # states that the other columns show, too
 
 
 def head(said: Said, width: int, paused: bool) -> List[Line]:
@@ -36,19 +37,22 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
         lines.append((style, cut(f'monitor: {said.itself}', width)))
     if said.told_mode:
         lines.append(('', cut(f'mode: {said.told_mode}', width)))
-    if said.not_watched:
-        lines.append(('faint', cut(f'not watched: {said.not_watched}', width)))
-    if said.disarmed:
-        lines.append(('faint', cut(f'delays not watched now: {said.disarmed}', width)))
-    if said.mode:
-        lines.append(('', cut(f'off together, as is accepted: {said.mode}', width)))
-    if said.strangers:
-        new = ', '.join(f'{source} on {topic}' for source, topic in said.strangers)
-        lines.append(('', cut(f'new, not accepted: {new}', width)))
-    shown = said.mutes[:_MOST_MUTES]
-    lines += [('WARN', cut(f'muted: {mute}', width)) for mute in shown]
-    if said.number_of_mutes > len(shown):
-        lines.append(('WARN', f'muted: {said.number_of_mutes - len(shown)} more'))
+    known = said.of_model
+    heard = sum(each.age >= 0.0 for each in known)
+    if heard < len(known):
+        lines.append(('', cut(f'{heard} of {len(known)} heard so far', width)))
+    for style, title, names in (
+            ('faint', 'not watched',
+             [f'{each.name} ({each.not_watched})' for each in known if each.not_watched]),
+            ('faint', 'delays not watched now', said.disarmed),
+            ('', 'off together, as is accepted', said.off_together),
+            ('', 'new, not accepted', [' on '.join(filter(None, (each.component, each.topic)))
+                                       for each in said.strangers])):
+        if names:
+            lines.append((style, cut(f'{title}: {", ".join(names)}', width)))
+    lines += [('WARN', cut(f'muted: {mute}', width)) for mute in said.mutes[:_MOST_MUTES]]
+    if len(said.mutes) > _MOST_MUTES:
+        lines.append(('WARN', f'muted: {len(said.mutes) - _MOST_MUTES} more'))
     return lines
 
 
@@ -66,17 +70,17 @@ def component_head(sort: str, pattern: str, width: int) -> Line:
     return 'head', cut(_row(name, 'events/s', 'age', 'limit', 'found in', 'state', width), width)
 
 
-def component(of: Component, width: int) -> Line:
-    """Return the line of a component: events/s are those heard of those expected."""
+def component(of: Any, width: int) -> Line:
+    """Return the line of a component (ComponentState): events/s are heard/usual ones."""
     name = of.name if len(of.name) <= _NAME else f'{of.name[:_NAME - 1]}…'
-    rate = _shown(of.rate) + ('' if of.expected is None else f'/{_shown(of.expected)}')
-    share = '-' if of.share is None else f'{100 * min(of.share, 9.99):.0f} %'
-    state = of.message
-    if of.not_watched:
-        state = f'not watched: {of.not_watched}' if of.level == 0 else (
-            f'{of.message}; not watched: {of.not_watched}')
-    return (LEVELS[of.level] if of.level else '', cut(_row(
-        name, rate, _shown(of.age, ' s'), share, _found(of.found_after), state, width), width))
+    rate = '-' if is_unknown(of) else f'{of.rate:.1f}'
+    if of.usual_rate > 0.0:
+        rate += f'/{of.usual_rate:.1f}'
+    age = f'{of.age:.1f} s' if of.age >= 0.0 else '-'
+    share = f'{100.0 * min(of.share, 9.99):.0f} %' if of.share >= 0.0 else '-'
+    level = max(level_of(of), LEVELS.index('WARN') if _is_at_limit(of) else 0)
+    style = LEVELS[level] if level else 'faint' if is_unknown(of) else ''
+    return style, cut(_row(name, rate, age, share, _found(of), _state_of(of), width), width)
 
 
 def cut(text: str, width: int) -> str:
@@ -102,14 +106,24 @@ def _incident(each: Any, width: int) -> Line:
     return 'faint' if each.over else 'ERROR', cut(f'  {text}', width)
 
 
-def _shown(value: Optional[float], unit: str = '') -> str:
-    return '-' if value is None else f'{value:.1f}{unit}'
+def _is_at_limit(of: Any) -> bool:
+    return bool(of.share >= 1.0)
 
 
-def _found(text: str) -> str:
-    """Return by itself and while it is needed, as `9.5/0.6 s`; one if only that is known."""
-    try:
-        times = [float(each.partition(' ')[0]) for each in text.split(', ')]
-    except ValueError:
-        return text[:10] or '-'
-    return '/'.join(f'{each:.0f}' if each >= 100.0 else f'{each:.1f}' for each in times) + ' s'
+def _state_of(of: Any) -> str:
+    more = []
+    if _is_at_limit(of) and level_of(of) < LEVELS.index('ERROR'):
+        more.append(f'at {100.0 * of.share:.0f} % of its limit')
+    if of.not_watched:
+        more.append(f'not watched: {of.not_watched}')
+    more = [each for each in more if each not in of.state]
+    return '; '.join(more if more and of.state in _PLAIN else [of.state, *more])
+
+
+def _found(of: Any) -> str:
+    """Return by itself and while it is asked, as `9.5/0.6 s`; one where that says all."""
+    times = [each for each in (of.found_after, of.found_when_asked) if each >= 0.0]
+    if len(times) == 2 and times[1] >= times[0]:
+        times.pop()
+    return '/'.join(f'{each:.0f}' if each >= 100.0 else f'{each:.1f}' for each in times) + (
+        ' s' if times else '-')

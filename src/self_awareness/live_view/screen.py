@@ -11,7 +11,7 @@ import urwid
 from self_awareness.live_view import lines
 from self_awareness.live_view.said import SORTS, Said
 
-KEYS = 'q quit  s sort  f filter  p pause  m mute 10 min  a accept  c clear  d dump'
+KEYS = 'q quit  s sort  f filter  p pause  m mute  u unmute  a accept  c clear  d dump'
 """The last line."""
 
 _EVERY_S = 0.5
@@ -22,6 +22,11 @@ _SLOW_S, _GIVEN_UP_S = 2.0, 10.0
 _PALETTE = [('head', 'default,bold', 'default'), ('OK', 'dark green', 'default'),
             ('WARN', 'yellow', 'default'), ('ERROR', 'light red,bold', 'default'),
             ('STALE', 'dark cyan', 'default'), ('faint', 'dark gray', 'default')]
+_SELECTED = {None: 'selected', '': 'selected',
+             **{style: f'selected {style}' for style, _, _ in _PALETTE}}
+_PALETTE_SELECTED = [('selected', 'default,standout', 'default', 'standout'),
+                     *((_SELECTED[style], f'{color},standout', background, 'standout')
+                       for style, color, background in _PALETTE)]
 
 
 class Screen:
@@ -34,9 +39,9 @@ class Screen:
         Args:
             said: what is shown now.
             is_over: why nothing more will come; empty: it goes on.
-            calls: by key c and d, what it does, by m, what mutes a component for some seconds,
-                and by a, what accepts the alarm of an id, or, where that is 0, senders and their
-                topics; they return what came of it, and may take as long as they like.
+            calls: by key c and d, what it does, by m, what mutes a component for some seconds
+                (0: takes that back), and by a, what accepts the alarm of an id, or, where that is
+                0, strangers; they return what came of it, and may take as long as they like.
         """
         self._said, self._is_over = said, is_over
         self._calls = {key: self._in_thread(call) for key, call in calls.items()}
@@ -45,14 +50,15 @@ class Screen:
         self._shown = said()
         self._sort, self._pattern, self._paused = SORTS[0], '', False
         self._names: List[str] = []
+        self._muted = ''  # who was muted last; empty: nobody
         self._if_yes: Optional[Callable[[], str]] = None  # what an answer is awaited for
         self._listed = urwid.SimpleFocusListWalker([])
         self._head = urwid.Pile([urwid.Text('')])
         self._asked = urwid.Edit('filter: ')
         self._foot = urwid.Text(KEYS)
         self._frame = urwid.Frame(urwid.ListBox(self._listed), self._head, self._foot)
-        self._loop = urwid.MainLoop(self._frame, _PALETTE, unhandled_input=self._on_key,
-                                    handle_mouse=False)
+        self._loop = urwid.MainLoop(self._frame, [*_PALETTE, *_PALETTE_SELECTED],
+                                    unhandled_input=self._on_key, handle_mouse=False)
         self.why = ''
         """Why it ended; empty: somebody has quit."""
 
@@ -84,10 +90,10 @@ class Screen:
         focus = self._focus()
         found = self._shown.components(self._sort, self._pattern)
         self._names = [each.name for each in found]
-        self._listed[:] = [urwid.AttrMap(_Row(lines.component(each, width)), None, 'head')
+        self._listed[:] = [urwid.AttrMap(_Row(lines.component(each, width)), None, _SELECTED)
                            for each in found]
-        if focus in self._names:  # the selection goes with its component
-            self._listed.set_focus(self._names.index(focus))
+        if found:  # the selection goes with its component
+            self._listed.set_focus(self._names.index(focus) if focus in self._names else 0)
 
     def _focus(self) -> str:
         at = self._listed.focus
@@ -98,7 +104,7 @@ class Screen:
             self._on_filter(key)
         elif self._if_yes is not None:
             call, self._if_yes = self._if_yes, None
-            self._say(call() if key in ('y', 'Y') else 'not accepted')
+            self._say(call() if key in ('y', 'Y') else 'not done')
         elif key in ('q', 'Q'):
             raise urwid.ExitMainLoop()
         elif key == 's':
@@ -109,12 +115,23 @@ class Screen:
             self._asked.set_edit_text(self._pattern)
             self._frame.footer, self._frame.focus_position = self._asked, 'footer'
         elif key == 'm' and self._focus():
-            self._say(self._calls['m'](self._focus(), _MUTE_S))
+            self._ask_to_mute(self._focus())
+        elif key == 'u':
+            self._say(self._calls['m'](self._muted, 0.0) if self._muted
+                      else 'nobody was muted here')
         elif key == 'a':
             self._on_accept()
         elif key in ('c', 'd'):
             self._say(self._calls[key]())
         self._draw()
+
+    def _ask_to_mute(self, component: str) -> None:
+        def mute() -> str:
+            self._muted = component
+            return self._calls['m'](component, _MUTE_S)
+
+        self._if_yes = mute
+        self._say(f'mute {component} for {_MUTE_S / 60.0:.0f} minutes? (y/n)')
 
     def _on_accept(self) -> None:
         alarm, strangers = self._shown.standing, self._shown.strangers

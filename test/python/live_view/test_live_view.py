@@ -17,10 +17,36 @@ def status(name: str, level: int = 0, message: str = 'heard', **values: str) -> 
         SimpleNamespace(key=key, value=value) for key, value in values.items()])
 
 
-def of_component(name: str, level: int, rate: str, age: str) -> Any:
-    return status(f'watch: {name}', level, 'heard' if level == 0 else '/t: silent for 1.2 s', **{
-        'events a second': rate, 'last heard [s ago]': age, 'death found after [s]': '0.4',
-        'share of limit': '7 %', '/t': f'{rate} of 10 Hz', '/u': '5 of 2.5 Hz'})
+def of_component(name: str, level: int = 0, state: str = 'heard', **values: Any) -> Any:
+    return SimpleNamespace(**{**dict(
+        name=name, level=level, state=state, rate=10.0, usual_rate=12.5, age=0.1, share=0.07,
+        found_after=0.4, found_when_asked=-1.0, not_watched=''), **values})
+
+
+def in_graph(name: str, why: str) -> Any:
+    return of_component(name, state='in the graph', rate=0.0, usual_rate=0.0, age=-1.0, share=-1.0,
+                        found_after=-1.0, not_watched=why)
+
+
+def components(*of: Any, **lists: Any) -> Any:
+    return SimpleNamespace(**{**dict(
+        model='m', components=list(of), strangers=[], delays_not_watched=[], off_together=[],
+        mutes=[]), **lists})
+
+
+def stranger(component: str, topic: str) -> Any:
+    return SimpleNamespace(component=component, topic=topic, kind='stranger')
+
+
+def row(of: Any, width: int = 200) -> Tuple[str, str]:
+    style, text = lines.component(of, width)
+    return style, re.sub(' +', ' ', text)
+
+
+def heads(*of: Any, **lists: Any) -> List[Tuple[str, str]]:
+    said = Said('/watch')
+    said.on_components(components(*of, **lists))
+    return lines.head(said, 80, False)[1:]
 
 
 class Clock:
@@ -59,19 +85,20 @@ def incident(component: str, alarms: int = 1, over: bool = False, **lists: List[
 def said() -> Said:
     of = Said('/watch')
     of.on_status(verdict(-0.5))
-    of.on_diagnostics(SimpleNamespace(status=[
-        status('watch: communication', 2, 'abnormal communication', **{
-            'not watched': '/rare',
-            'not accepted, events so far': '/rostopic on /cmd_vel: 12, /joystick on /joy: 3'}),
+    of.on_diagnostics(diagnostics(
+        status('watch: communication', 2, 'abnormal communication'),
         status('watch: monitor', 0, 'listening', **{
-            'events a second': '120', 'share of a core spent': '0.02',
-            'mute 1': '/noisy until 2026-11-23 15:00:00 UTC, by /rqt'}),
-        of_component('/base', 0, '10.02', '0.05'), of_component('/player', 2, '0', '3.1'),
-        of_component('/camera', 1, '29.5', '0.4'),
-        status('watch: /rare', 0, 'heard', **{
-            'events a second': '0', 'last heard [s ago]': '90', 'death found after [s]':
-            'not watched', 'why not watched': 'too few messages in training: 7 gaps'}),
-        status('another: /laser', 2, 'of another monitor')]))
+            'events a second': '120', 'share of a core spent': '0.02'}),
+        status('another: monitor', 2, 'of another monitor')))
+    of.on_components(components(
+        of_component('/base', rate=15.0, age=0.05),
+        of_component('/camera', 1, '/t: silent for 1.2 s', rate=34.5, age=0.4),
+        in_graph('/a_tool', 'it publishes nothing'),
+        of_component('/player', 2, '/t: died', rate=0.0, age=3.1, share=2.3),
+        of_component('/rare', rate=0.0, usual_rate=0.0, age=90.0, share=-1.0, found_after=-1.0,
+                     not_watched='too few messages in training: 7 gaps'),
+        strangers=[stranger('/rostopic', '/cmd_vel'), stranger('', '/joy')],
+        mutes=['/noisy until 2026-11-23 15:00:00 UTC, by /rqt']))
     of.on_incidents(SimpleNamespace(incidents=[
         incident('/old', over=True), incident('/quiet', alarms=0),
         incident('/player', 7, victims=['/slam', '/navigation', '/speech'])]))
@@ -82,43 +109,74 @@ def test_components_are_sorted_and_filtered(said: Said) -> None:
     def names(sort: str, pattern: str = '') -> List[str]:
         return [each.name for each in said.components(sort, pattern)]
 
-    assert names('level') == ['/player', '/camera', '/base', '/rare'], 'the worst first'
-    assert names('name') == ['/base', '/camera', '/player', '/rare']
-    assert names('rate') == ['/camera', '/base', '/player', '/rare']
-    assert names('age') == ['/rare', '/player', '/camera', '/base']
-    assert names('limit') == ['/base', '/camera', '/player', '/rare']
+    assert names('level') == ['/player', '/camera', '/base', '/rare', '/a_tool'], 'the worst first'
+    assert names('name') == ['/base', '/camera', '/player', '/rare', '/a_tool']
+    assert names('rate') == ['/camera', '/base', '/player', '/rare', '/a_tool']
+    assert names('age') == ['/rare', '/player', '/camera', '/base', '/a_tool']
+    assert names('limit') == ['/player', '/base', '/camera', '/rare', '/a_tool']
     assert names('name', 'a*r') == [] and names('name', '/c*a') == ['/camera']
     assert names('name', 'as') == ['/base']
     assert {each for sort in SORTS for each in names(sort)} == {
-        '/base', '/camera', '/player', '/rare'}
+        '/base', '/camera', '/player', '/rare', '/a_tool'}
 
 
-def test_it_shows_how_soon_a_death_is_found_also_while_it_is_needed() -> None:
-    def found(text: str) -> str:
-        of = Said('/watch')
-        of.on_diagnostics(diagnostics(status('watch: /a', 0, 'heard', **{
-            'death found after [s]': text})))
-        row = lines.component(of.components('name', '')[0], 120)[1]
-        return row.rpartition('  heard')[0][-10:]
-
-    assert found('0.4').strip() == '0.4 s'
-    assert found('9.5, 0.6 while it is needed').strip() == '9.5/0.6 s'
-    assert found('1200, 0.6 while it is needed') == '1200/0.6 s'
-    assert found('0.61 while it is needed').strip() == '0.6 s'
-    assert found('not watched: accepted') == 'not watche'
+@pytest.mark.parametrize('by_itself, asked, shown', [
+    (0.4, -1.0, '0.4 s'), (9.5, 0.6, '9.5/0.6 s'), (1200.0, 0.6, '1200/0.6 s'),
+    (-1.0, 0.61, '0.6 s'), (0.4, 2.0, '0.4 s'), (-1.0, -1.0, '-')])
+def test_it_shows_how_soon_a_death_is_found_also_when_it_is_asked(
+        by_itself: float, asked: float, shown: str) -> None:
+    found = of_component('/a', found_after=by_itself, found_when_asked=asked)
+    assert row(found) == ('', f'/a 10.0/12.5 0.1 s 7 % {shown} heard')
+    assert row(found, 99) == ('', '/a 10.0/12.5 0.1 s 7 % heard'), 'it needs 100 columns'
 
 
-@pytest.mark.parametrize('key, told', [
-    ('off together, as is accepted', '/arm, /base'),
-    ('delays not watched now', '/b on /y after /a on /x')])
-def test_it_shows_who_is_not_judged_as_usual(key: str, told: str) -> None:
-    def shown(values: Dict[str, str]) -> List[str]:
-        of = Said('/watch')
-        of.on_diagnostics(diagnostics(status('watch: communication', 0, 'normal', **values)))
-        return [line for _, line in lines.head(of, 80, False) if key in line]
+@pytest.mark.parametrize('key, lists', [
+    ('off together, as is accepted', {'off_together': ['/arm', '/base']}),
+    ('delays not watched now', {'delays_not_watched': ['/arm', '/base']}),
+    ('new, not accepted', {'strangers': [stranger('', '/arm'), stranger('/base', '')]}),
+    ('muted', {'mutes': ['/arm, /base']})])
+def test_it_shows_who_is_not_judged_as_usual(key: str, lists: Dict[str, Any]) -> None:
+    assert [text for _, text in heads(**lists)] == [f'{key}: /arm, /base']
+    assert heads() == []
 
-    assert shown({key: told}) == [f'{key}: {told}']
-    assert shown({}) == []
+
+@pytest.mark.parametrize('level, share, state, style, shown', [
+    (0, 0.99, 'heard', '', 'heard'),
+    (0, 1.0, 'heard', 'WARN', 'at 100 % of its limit'),
+    (0, 2.3, 'muted: died', 'WARN', 'muted: died; at 230 % of its limit'),
+    (1, 12.0, '/t: late', 'WARN', '/t: late; at 1200 % of its limit'),
+    (2, 2.3, '/t: died', 'ERROR', '/t: died'),
+    (2, 0.1, '/t: died', 'ERROR', '/t: died')])
+def test_who_is_at_its_limit_is_not_heard_as_ever(level: int, share: float, state: str,
+                                                  style: str, shown: str) -> None:
+    of = of_component('/a', level, state, share=share)
+    percent = f'{100 * min(share, 9.99):.0f} %'
+    assert row(of) == (style, f'/a 10.0/12.5 0.1 s {percent} 0.4 s {shown}')
+
+
+def test_who_is_at_its_limit_is_above_those_that_are_as_usual() -> None:
+    of = Said('/watch')
+    of.on_components(components(of_component('/a'), of_component('/b', share=2.3)))
+    assert [each.name for each in of.components('level', '')] == ['/b', '/a']
+
+
+def test_it_counts_who_is_heard_so_far_until_all_are() -> None:
+    first, tool = of_component('/a'), in_graph('/tool', 'it publishes nothing')
+    late = of_component('/late', state='not heard yet', age=-1.0)
+    rare = of_component('/rare', state='not heard yet', age=-1.0, usual_rate=0.0,
+                        not_watched='too few')
+    assert heads(first, late, rare, tool)[0] == ('', '1 of 3 heard so far')
+    assert heads(first, tool) == [], 'a node that the model does not know is not waited for'
+
+
+def test_who_is_not_watched_comes_with_the_reason() -> None:
+    rare = of_component('/rare', not_watched='too few')
+    assert row(rare)[1].endswith(' 0.4 s not watched: too few')
+    accepted = of_component('/a', state='heard; not watched: accepted', not_watched='accepted')
+    assert row(accepted)[1].endswith(' 0.4 s heard; not watched: accepted')
+    tool = in_graph('/a_tool', 'it publishes nothing')
+    assert row(tool) == ('faint', '/a_tool - - - - not watched: it publishes nothing')
+    assert heads(rare, tool) == [('faint', 'not watched: /rare (too few)')], 'of the model'
 
 
 def test_it_shows_the_mode_that_the_robot_tells() -> None:
@@ -151,27 +209,27 @@ def test_what_the_monitor_says_of_itself_has_its_level(level: int, style: str) -
 
 def test_no_name_is_a_pattern() -> None:
     of = Said('/watch')
-    of.on_diagnostics(diagnostics(status('watch: communication', 1, '', **{
-        'not accepted, events so far': '/a on /b: 1, /x: 1, /* on /*: 1, /y on /z: 3, ...'})))
-    assert of.strangers == [('/a', '/b'), ('', '/x'), ('/y', '/z')]
+    of.on_components(components(strangers=[
+        stranger('/a', '/b'), stranger('', '/x'), stranger('/*', '/*'), stranger('/y', '/z*')]))
+    assert of.strangers == [stranger('/a', '/b'), stranger('', '/x')]
 
 
 def test_whatever_a_stranger_publishes_it_goes_on() -> None:
     of = Said('/watch')
     of.on_diagnostics(diagnostics(
-        status('watch: communication', 7), status('watch: monitor', 9, **{'further mute': 'inf'}),
-        status('watch: /a', -56, **{'/t': '- of - Hz'})))
-    found, = of.components('level', '')
-    assert found.rate is None and lines.component(found, 80)[0] == 'STALE'
+        status('watch: communication', 7), status('watch: monitor', -56)))
+    of.on_components(components(of_component('/a', 200, share=math.nan, rate=math.inf,
+                                             age=math.nan)))
+    found, = of.components('limit', '')
+    assert lines.component(found, 80)[0] == 'STALE'
     assert lines.head(of, 80, False)[0][0] == 'STALE'
 
 
 def test_who_was_never_heard_comes_first_by_age() -> None:
     of = Said('/watch')
-    of.on_diagnostics(SimpleNamespace(status=[of_component('/a', 0, '1', '9'),
-                                              status('watch: /b', message='not heard yet')]))
-    first, second = of.components('age', '')
-    assert (first.name, first.age, second.age) == ('/b', None, 9.0)
+    of.on_components(components(of_component('/a', age=9.0),
+                                of_component('/b', state='not heard yet', age=-1.0)))
+    assert [each.name for each in of.components('age', '')] == ['/b', '/a']
 
 
 def test_the_curve_is_in_units_of_the_limit(said: Said) -> None:
@@ -192,17 +250,17 @@ def test_all_is_in_80_columns(said: Said) -> None:
     texts = [text for _, text in shown]
     assert max(map(len, texts)) <= 80
     page = '\n'.join(texts)
-    assert said.strangers == [('/rostopic', '/cmd_vel'), ('/joystick', '/joy')]
     for text in ('ERROR  abnormal communication',
                  'not watched: /rare (too few messages in training: 7 gaps)',
-                 'new, not accepted: /rostopic on /cmd_vel, /joystick on /joy',
+                 'new, not accepted: /rostopic on /cmd_vel, /joy',
                  'muted: /noisy until',
                  'open  /player died, raised 7 times; and /slam, /navigation ...',
                  'over  /old died', 'listening; 120 events/s, 0.02 cores'):
         assert text in page
-    assert '/quiet' not in page and '/laser' not in page
+    assert '/quiet' not in page and 'another' not in page
     rows = [re.sub(' +', ' ', text) for text in texts]
     assert '/base 15.0/12.5 0.1 s 7 % heard' in rows
+    assert rows[-1] == '/a_tool - - - not watched: it publishes n…'
     assert [each for each in rows if each.startswith('/rare 0.0 90.0 s - not watched: too few')]
     assert ('ERROR', 'WARN') == tuple(style for style, text in shown
                                       if text.startswith(('/player ', '/camera ')))
@@ -222,7 +280,8 @@ def test_what_stands_is_what_the_verdict_says(said: Said) -> None:
 
 
 def test_names_do_not_control_the_terminal(said: Said) -> None:
-    said.on_diagnostics(SimpleNamespace(status=[of_component('/\x1b[2J', 0, '1', '1')]))
+    said.on_components(components(of_component('/\x1b[2J', state='\x1b[2J'), mutes=['\x1b[2J']))
+    assert not [text for _, text in lines.head(said, 80, False) if '\x1b' in text]
     assert not [each for each in said.components('name', '')
                 if '\x1b' in lines.component(each, 80)[1]]
 
@@ -251,51 +310,13 @@ def test_a_monitor_that_is_silent_is_stale() -> None:
     assert lines.head(of, 80, False)[0][0] == 'OK'
 
 
-def test_components_of_a_model_that_was_replaced_go() -> None:
-    clock = Clock()
-    of = Said('/watch', clock)
-
-    def names() -> List[str]:
-        return [each.name for each in of.components('name', '')]
-
-    def whole(model: str) -> Any:
-        return status('watch: communication', model=model)
-
-    of.on_diagnostics(diagnostics(whole('a'), of_component('/a', 0, '1', '1'),
-                                  of_component('/b', 0, '1', '1')))
-    of.on_diagnostics(diagnostics(whole('a'), of_component('/b', 0, '1', '1')))
-    assert names() == ['/a', '/b'], 'they take turns'
-    of.on_diagnostics(diagnostics(whole('b'), of_component('/b', 0, '1', '1'),
-                                  of_component('/c', 0, '1', '1')))
-    assert names() == ['/b', '/c']
-    clock.now += 61
-    of.on_diagnostics(diagnostics(whole('b'), of_component('/c', 0, '1', '1')))
-    shown = lines.component(of.components('name', '')[0], 80)
-    assert shown[0] == 'STALE' and 'not told for 61 s' in shown[1]
-    clock.now += 60
-    of.on_diagnostics(diagnostics(whole('b'), of_component('/c', 0, '1', '1')))
-    assert names() == ['/c']
-
-
-def test_lists_that_are_only_counted_for_some_seconds_stay() -> None:
+def test_what_was_told_before_goes() -> None:
     of = Said('/watch')
+    of.on_components(components(of_component('/a'), mutes=['/a']))
+    of.on_components(components(of_component('/b')))
+    assert [each.name for each in of.components('name', '')] == ['/b'] and of.mutes == []
 
-    def say(strangers: str, *mutes: str, further: int = 0) -> None:
-        told: Dict[str, Any] = {f'mute {i + 1}': mute for i, mute in enumerate(mutes)}
-        new: Dict[str, Any] = {'not accepted, events so far': strangers}
-        if further:
-            told['further mute'] = str(further)
-        of.on_diagnostics(diagnostics(
-            status('watch: communication', **new), status('watch: monitor', **told)))
 
-    say('2, listed every 20 s', '/a', further=1)
-    assert of.strangers == [] and of.mutes == ['/a'] and of.number_of_mutes == 2
-    say('/x on /y: 3, /z on /u: 4', '/a', '/b')
-    say('2, listed every 20 s', '/a', further=1)
-    assert of.strangers == [('/x', '/y'), ('/z', '/u')]
-    assert of.mutes == ['/a', '/b']
-    assert ('WARN', 'muted: /b') in lines.head(of, 80, False)
-    say('', '/a')
-    assert of.strangers == [] and of.mutes == ['/a']
-    say('', *'abcde', further=10)
-    assert lines.head(of, 80, False)[-1] == ('WARN', 'muted: 12 more')
+def test_of_many_mutes_the_first_are_shown() -> None:
+    assert heads(mutes=list('abc'))[-1] == ('WARN', 'muted: c')
+    assert heads(mutes=list('abcde'))[-2:] == [('WARN', 'muted: c'), ('WARN', 'muted: 2 more')]
