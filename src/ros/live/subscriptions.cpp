@@ -1,7 +1,7 @@
 #include "self_awareness/ros/live/subscriptions.h"
 
 #include <ros/network.h>
-#include <ros/transport_hints.h>
+#include <ros/subscribe_options.h>
 
 #include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
