@@ -2,6 +2,7 @@
 #include <ctime>
 #include <utility>
 
+#include "clock_status.h"
 #include "monitor.h"
 #include "not_heard.h"
 #include "nothing_heard.h"
@@ -50,7 +51,8 @@ void Monitor::onReport() {
   const bool deaf =
       state.communication.heard.known_types + state.communication.heard.unknown_types == 0;
   const std::int64_t waited = moment.steady - started_at_;
-  if (session_ && deaf && waited >= kNothingHeard) {
+  if (session_ && deaf && waited >= kNothingHeard &&
+      !clockStands(live_->clock().standsStillFor())) {
     state.communication.nothing_heard =
         "nothing has been heard for " + ros1::number(std::floor(core::toSeconds(waited))) +
         " s: " + whyNothingIsHeard(live_->graph().get(), *session_->encoder());

@@ -45,6 +45,7 @@ std::size_t numberOfAddresses(const std::set<Publisher>& publishers) {
 
 constexpr std::chrono::milliseconds kPatience(500);
 constexpr char kNobodyListens[] = "nobody listens at its address";
+constexpr char kDoesNotAnswer[] = "does not answer";
 
 /// Why there is no connection to a node, as far as its machine tells. Waits for it, and for
 /// whoever knows the address of its host.
@@ -63,7 +64,7 @@ std::string whyMissing(const std::string& uri) {
   }
   const bool unknown = node.error() == asio::error::host_not_found ||
                        node.error() == asio::error::host_not_found_try_again;
-  return unknown ? "nobody knows its host " + printable(host, kLongestName) : "does not answer";
+  return unknown ? "nobody knows its host " + printable(host, kLongestName) : kDoesNotAnswer;
 }
 
 }  // namespace
@@ -142,15 +143,25 @@ void Subscriptions::tellAgain(const Listening& listening, std::int64_t now) {
             [](const auto* a, const auto* b) { return a->second.tell_at < b->second.tell_at; });
   due.resize(std::min(due.size(), kMostAtATime));
   std::set<std::string> topics;
+  std::set<std::string> anew;
   for (auto* const each : due) {
     const auto& [topic, publisher] = each->first;
     Missing& missing = each->second;
     if (now - missing.since >= kMissing) {
       missing.why = whyMissing(publisher.uri);
+      if (missing.why == kDoesNotAnswer) {
+        anew.insert(topic);
+      }
     }
     missing.tell_at = now + missing.pause;
     missing.pause = std::min(2 * missing.pause, kLongestPause);
     topics.insert(topic);
+  }
+  // A subscription keeps the type of whom it heard first, and hears no other one.
+  for (const std::string& topic : anew) {
+    subscribers_.erase(topic);
+    subscribe(topic);
+    topics.erase(topic);
   }
   for (const std::string& topic : topics) {
     std::set<std::string> uris;

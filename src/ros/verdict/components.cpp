@@ -73,6 +73,8 @@ std::map<std::string, std::string> whyUnknown(const Graph& graph, const Encoder&
     for (const std::string& node : nodes.publishers) {
       name(node, "it publishes nothing that is listened to");
     }
+  }
+  for (const auto& [topic, nodes] : graph.topics) {
     for (const std::string& node : nodes.subscribers) {
       name(node, "it publishes nothing");
     }

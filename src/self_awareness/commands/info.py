@@ -246,7 +246,8 @@ def _graph(summary: Dict[str, Any]) -> str:
     hosts = ', '.join(f'{host} ({number})' for host, number in sorted(nodes.items()))
     return (f'sources that somebody listens to: {len(publishers)}, connections: {len(graph)}'
             + (f'; hosts and their nodes: {hosts}' if hosts else '')
-            + (f'; not watched, since they publish nothing: {", ".join(silent)}' if silent else ''))
+            + (f'; not watched, since they publish nothing: {", ".join(silent)}'
+               if silent else ''))
 
 
 def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:

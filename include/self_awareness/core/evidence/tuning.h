@@ -78,7 +78,7 @@ struct Tuning {
   double share_of_least = 0.5;
   double least_margin = 1.25;
   double least_deadline_margin = 2;
-  double most_margin = 2;
+  double most_margin = 4;
   double most_gap_margin = 1.6;
   double most_own_margin = 2;
   double most_tail_margin = 8;
