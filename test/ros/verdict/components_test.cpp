@@ -26,7 +26,8 @@ class ComponentsTest : public testing::Test {
     state_.coverage[1].gaps = 3;
     state_.expected["/player"] = {{"/scan", 25.0}, {"/odom", 10.0}};
     state_.shares["/player"] = 2.3;
-    graph_.topics["/scan"] = {"sensor_msgs/LaserScan", {"/player"}, {"/slam", "/viewer", "/quiet"}};
+    graph_.topics["/scan"] = {
+        "sensor_msgs/LaserScan", {"/player"}, {"/slam", "/viewer", "/quiet"}};
     graph_.topics["/new"] = {"std_msgs/String", {"/stranger"}, {}};
     graph_.topics["/a"] = {"std_msgs/String", {}, {"/quiet"}};
     graph_.topics["/rosout"] = {"rosgraph_msgs/Log", {"/player", "/quiet"}, {}};

@@ -84,8 +84,8 @@ class Subscriptions {
   void subscribe(const std::string& topic);
   /// Notes who is missing, and since when.
   void compare(const Listening& listening, std::int64_t now);
-  /// Tells roscpp again of those who are missing, with longer and longer pauses. If a node is there
-  /// and not connected after 3 s, the topic is subscribed to anew.
+  /// Tells roscpp again of those who are missing, with longer and longer pauses. If a node is
+  /// there and not connected after 3 s, the topic is subscribed to anew.
   void tellAgain(const Listening& listening, std::int64_t now);
   std::vector<Unheard> missingFor3s(const std::set<std::string>& first, std::int64_t now) const;
 
