@@ -14,7 +14,7 @@ HOUR = 3600 * SECOND
 PART = 30 * SECOND
 LEAST_MARGIN = {'deadlines': 2.0, 'company': 2.0, 'own gaps': 2.0}
 """By pool; 1.25 elsewhere."""
-MOST_MARGIN, MOST_MARGIN_OF_PAIRS = 4.0, 2.0
+MOST_MARGIN, MOST_MARGIN_OF_DELAYS = 4.0, 2.0
 MOST_GAP_MARGIN = 1.6
 MOST_OWN_MARGIN = 2.0
 MOST_TAIL_MARGIN = {False: 2.0, True: 8.0}
@@ -402,7 +402,8 @@ class ReferenceLimits:
             told = held_out.margin(self._rates[pool])
             for index, all_shown, (largest, least) in zip(tracks, shown, seen):
                 least_margin = LEAST_MARGIN.get(self._model.tracks[index][0], 1.25)
-                most_margin = (MOST_MARGIN_OF_PAIRS if self._model.tracks[index][0] == 'pairs'
+                most_margin = (MOST_MARGIN_OF_DELAYS
+                               if self._model.tracks[index][0] in ('pairs', 'own gaps')
                                else MOST_MARGIN)
                 margin = min(max(told, least_margin),
                              MOST_GAP_MARGIN if of_gaps else most_margin)

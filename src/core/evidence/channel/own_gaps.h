@@ -21,7 +21,7 @@ class OwnGaps : public Channel {
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
                                             std::vector<std::size_t> tracks) const override;
   Margins margins(const Tuning& tuning) const override {
-    return {tuning.least_deadline_margin, tuning.most_margin};  // pauses come in clumps
+    return {tuning.least_deadline_margin, tuning.least_deadline_margin};
   }
 };
 
