@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "accept_request.h"
-#include "file_writer.h"
+#include "node/file_writer.h"
 #include "operator_calls.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/Accept.h"

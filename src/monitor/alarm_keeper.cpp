@@ -5,8 +5,10 @@
 #include <exception>
 #include <utility>
 
+#include "diagnostics.h"
 #include "ros/verdict/standing_alarm.h"
 #include "self_awareness/ros/ros_time.h"
+#include "session.h"
 
 namespace self_awareness {
 namespace {
@@ -21,7 +23,29 @@ AlarmKeeper::AlarmKeeper(RecorderFolder folder, std::string run_id)
       run_id_(std::move(run_id)),
       writer_(kPause) {}
 
+void AlarmKeeper::setModel(std::uint64_t content) {
+  model_ = content;
+  if (read_) {  // what stood of the old model, or before there was one, is known no more
+    keep({}, 0, "");
+  }
+}
+
+void AlarmKeeper::onStart(const Session& session, const std::string& /*path*/) {
+  setModel(session.content());
+}
+
+void AlarmKeeper::onAlarm(const ros1::AlarmState& alarm) {
+  keep(alarm.message(), alarm.since(), alarm.recording());
+}
+
+void AlarmKeeper::onReport(MonitorState& state) {
+  if (!error().empty()) {
+    state.keeper_error = error();
+  }
+}
+
 std::optional<self_awareness::StandingAlarm> AlarmKeeper::read() {
+  read_ = true;
   try {
     std::optional<self_awareness::StandingAlarm> standing = ros1::readStandingAlarm(path_);
     if (standing && standing->run_id == run_id_) {

@@ -2,7 +2,8 @@
 
 #include <utility>
 
-#include "clock_status.h"
+#include "node/clock_status.h"
+#include "node/unheard_status.h"
 #include "ros/now.h"
 #include "self_awareness/core/stream/event.h"
 #include "session.h"
@@ -14,10 +15,20 @@ using ros1::number;
 
 namespace {
 
+std::vector<std::string> inWords(const std::vector<DriftKeeper::Told>& drift) {
+  std::vector<std::string> words;
+  words.reserve(drift.size());
+  for (const DriftKeeper::Told& each : drift) {
+    words.push_back(each.words);
+  }
+  return words;
+}
+
 /// All lists as they are told where nothing is left out.
 std::string allLists(const MonitorState& state) {
-  std::string lists = ros1::listed(state.mutes) + '\n' + ros1::listed(inWords(state.unheard)) +
-                      '\n' + ros1::listed(state.drift);
+  std::string lists = ros1::listed(state.mutes) + '\n' +
+                      ros1::listed(self_awareness::inWords(state.unheard)) + '\n' +
+                      ros1::listed(inWords(state.drift));
   for (const auto& [key, list] : ros1::listsOf(state.communication)) {
     lists += '\n' + ros1::listed(list);
   }
@@ -98,7 +109,7 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   if (!state.drift.empty()) {
     const std::size_t others = state.drift.size() - 1;
     status.mergeSummary(DiagnosticStatus::WARN,
-                        "drift: " + state.drift.front() +
+                        "drift: " + state.drift.front().words +
                             (others > 0 ? ", and of " + std::to_string(others) + " more" : ""));
   }
   tellUnheard(state.unheard, state.communication.lists, status);
@@ -116,7 +127,7 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   }
   ros1::tellNumbered("mute", state.mutes, state.communication.lists, status);
   if (state.drift.size() > 1) {
-    ros1::tellNumbered("drift", state.drift, state.communication.lists, status);
+    ros1::tellNumbered("drift", inWords(state.drift), state.communication.lists, status);
   }
   if (!state.drift_error.empty()) {
     status.add("drift is not kept", state.drift_error);

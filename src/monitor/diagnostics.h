@@ -10,14 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "drift_keeper.h"
 #include "flight_recorder.h"
 #include "kept_logs.h"
-#include "not_heard.h"
 #include "ros/verdict/diagnostic_status.h"
+#include "self_awareness/ros/live/subscriptions.h"
 
 namespace self_awareness {
 
-/// What the diagnostics tell; filled in by the monitor.
+/// What the diagnostics tell; filled in by Reports and the parts of the monitor.
 struct MonitorState {
   ros1::CommunicationState communication;
   std::size_t subscriptions = 0;
@@ -34,7 +35,7 @@ struct MonitorState {
   std::vector<std::string> mutes;           ///< in words
   std::string accept_error;                 ///< why what is accepted is not in its file
   std::string keeper_error;                 ///< why alarm or incidents are not in their files
-  std::vector<std::string> drift;           ///< who drifts, in words, most evidence first
+  std::vector<DriftKeeper::Told> drift;     ///< who drifts, most evidence first
   std::string drift_error;                  ///< why it is not in its file
   double longest_pause = 0;  ///< for which this program stood still, since the last report [s]
   std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder

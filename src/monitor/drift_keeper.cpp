@@ -7,7 +7,10 @@
 #include <exception>
 #include <utility>
 
+#include "diagnostics.h"
 #include "ros/verdict/drift_file.h"
+#include "session.h"
+#include "stretch.h"
 
 namespace self_awareness {
 namespace {
@@ -33,6 +36,23 @@ std::string inWords(const std::string& component, const Drift::Component& drift)
 
 DriftKeeper::DriftKeeper(std::string run_id, std::int64_t robot_start)
     : run_id_(std::move(run_id)), robot_start_(robot_start), writer_(kPause) {}
+
+void DriftKeeper::onStart(const Session& session, const std::string& path) {
+  session_ = &session;
+  setModel(path, {session.content(), session.components()});
+}
+
+void DriftKeeper::onVerdict(core::Verdict& verdict, ros1::Circumstances& /*circumstances*/) {
+  if (!verdict.settling) {
+    const std::int64_t begin = verdict.window->start;
+    add(begin, begin + session_->window(), session_->sharesOfWindow());
+  }
+}
+
+void DriftKeeper::onReport(MonitorState& state) {
+  state.drift = told_;
+  state.drift_error = error();
+}
 
 void DriftKeeper::setModel(const std::string& path, Judged judged) {
   endStretch();
@@ -91,14 +111,14 @@ void DriftKeeper::add(std::int64_t begin, std::int64_t end, const std::vector<do
   for (std::size_t number = 0; number < shares.size(); ++number) {
     stretch_->shares[number] = std::max(stretch_->shares[number], shares[number]);
   }
-  if (end - stretch_->begin >= KeptLogs::kLongest) {
+  if (end - stretch_->begin >= kLongestStretch) {
     endStretch();
   }
 }
 
 void DriftKeeper::endStretch() {
   const std::optional<DriftSamples::Stretch> stretch = std::exchange(stretch_, std::nullopt);
-  if (!stretch || !normal_ || stretch->end - stretch->begin < KeptLogs::kShortest) {
+  if (!stretch || !normal_ || stretch->end - stretch->begin < kShortestStretch) {
     return;
   }
   if (samples_.add(*stretch)) {
@@ -118,9 +138,9 @@ void DriftKeeper::forget() {
   tell();
 }
 
-void DriftKeeper::onRobotStart(std::int64_t robot_start) {
+void DriftKeeper::onRobotStart(std::int64_t at) {
   endStretch();
-  robot_start_ = robot_start;
+  robot_start_ = at;
   run_id_.clear();  // that of the new master is not known
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "file_writer.h"
-#include "kept_logs.h"
+#include "node/file_writer.h"
+#include "part.h"
 #include "self_awareness/KeptDrift.h"
 #include "self_awareness/core/evidence/limits/drift_samples.h"
 
@@ -16,12 +16,12 @@ namespace self_awareness {
 
 /// Says how far what is heard has drifted from what was learned (docs/learn_more.md): of each
 /// component, the largest share of its limits in each start of the robot, or day of one. Only what
-/// was normal counts, by the stretches of KeptLogs. It is kept in a file beside the model, for
-/// other starts.
+/// was normal counts, by stretches as they are kept to learn from. It is kept in a file beside the
+/// model, for other starts.
 ///
 /// It belongs to the thread that judges; a thread of its own waits for the disk. Times are ROS
 /// time [ns].
-class DriftKeeper {
+class DriftKeeper : public Part {
  public:
   /// What is judged.
   struct Judged {
@@ -47,17 +47,18 @@ class DriftKeeper {
   /// Takes in a window that has settled.
   /// @param shares the largest of a limit, by component
   void add(std::int64_t begin, std::int64_t end, const std::vector<double>& shares);
-  /// The stretch is not normal operation, and does not count.
-  void leaveOut() { normal_ = false; }
-  /// What comes has nothing to do with what was before.
-  void endStretch();
   /// What is judged of components has changed: all begins anew.
   void forget();
-  /// The master was restarted: the robot is taken for started again.
-  /// @param robot_start wall time [ns]
-  void onRobotStart(std::int64_t robot_start);
-  /// Ends the stretch and waits for the disk; nothing is kept after it.
-  void finish();
+  void onStart(const Session& session, const std::string& path) override;
+  void onVerdict(core::Verdict& verdict, ros1::Circumstances& circumstances) override;
+  /// The stretch does not count.
+  void onNotNormal(const std::string& /*why*/) override { normal_ = false; }
+  /// Ends the stretch.
+  void onCut(Cut /*why*/) override { endStretch(); }
+  void onRobotStart(std::int64_t at) override;
+  void onReport(MonitorState& state) override;
+  /// Ends the stretch and waits for the disk.
+  void finish() override;
 
   /// Whose drift is told, the one with most evidence first.
   const std::vector<Told>& told() const { return told_; }
@@ -65,12 +66,14 @@ class DriftKeeper {
   std::string error() const { return writer_.report().error; }
 
  private:
+  void endStretch();
   /// Goes on with the samples of a file that is of this model.
   void read();
   void restore(const self_awareness::KeptDrift& kept);
   void write();
   void tell();
 
+  const Session* session_ = nullptr;  // that judges; null: none does yet
   std::string run_id_;
   std::int64_t robot_start_;
   std::string path_;  // of the file

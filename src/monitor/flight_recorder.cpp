@@ -6,7 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "recorded_log.h"
+#include "diagnostics.h"
+#include "ros/text.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 
 namespace self_awareness {
@@ -28,7 +29,7 @@ RecorderFolder folderOf(const RecorderParameters& parameters) {
 }
 
 FlightRecorder::FlightRecorder(const RecorderParameters& parameters,
-                               std::function<Source()> source)
+                               std::function<ros1::LogSource()> source)
     : duration_(nanoseconds(parameters.duration)),
       after_(nanoseconds(parameters.after)),
       most_bytes_(static_cast<std::size_t>(parameters.memory) * kMegabyte),
@@ -37,7 +38,11 @@ FlightRecorder::FlightRecorder(const RecorderParameters& parameters,
       packer_([this](self_awareness::EventLog part) { keep(std::move(part)); }),
       writer_(kPause) {}
 
-void FlightRecorder::add(const core::Event& event, const core::Vocabulary& vocabulary) {
+std::vector<ros::ServiceServer> FlightRecorder::advertise(ros::NodeHandle& private_node_handle) {
+  return {private_node_handle.advertiseService("dump", &FlightRecorder::onDump, this)};
+}
+
+void FlightRecorder::onEvent(const core::Event& event, const core::Vocabulary& vocabulary) {
   if (!enabled()) {
     return;
   }
@@ -49,23 +54,24 @@ void FlightRecorder::add(const core::Event& event, const core::Vocabulary& vocab
   packer_.add(event, vocabulary);
 }
 
-void FlightRecorder::add(const core::Waiting& waiting) {
+void FlightRecorder::onWaiting(const core::Waiting& waiting) {
   if (heardAnything()) {
     packer_.add(waiting);
   }
 }
 
-void FlightRecorder::advance(std::int64_t ros_now, std::int64_t now) {
+void FlightRecorder::onTick(const Moment& now) {
+  now_ = now.steady;
   if (heardAnything()) {
-    last_ = std::max(last_, ros_now);
+    last_ = std::max(last_, now.heard_until);
     packer_.advance(last_);
   }
-  if (pending_ && now >= pending_->due) {
+  if (pending_ && now_ >= pending_->due) {
     write(std::exchange(pending_, std::nullopt)->path);
   }
 }
 
-void FlightRecorder::restart() {
+void FlightRecorder::onCut(Cut /*why*/) {
   if (pending_) {
     write(std::exchange(pending_, std::nullopt)->path);
   }
@@ -76,15 +82,44 @@ void FlightRecorder::restart() {
   forgotten_types_.clear();
 }
 
-std::string FlightRecorder::onAlarm(std::int64_t now) {
+void FlightRecorder::onVerdict(core::Verdict& verdict, ros1::Circumstances& circumstances) {
+  if (verdict.alarm && !stands_ && enabled()) {
+    if (!pending_) {
+      pending_ = Pending{newPath(RecorderFolder::Cause::kAlarm), now_ + after_};
+    }
+    kept_ = pending_->path;
+  }
+  if (verdict.alarm) {
+    circumstances.recording = kept_;
+  }
+}
+
+void FlightRecorder::onAlarm(const ros1::AlarmState& alarm) {
+  stands_ = alarm.message().level == self_awareness::SelfAwareness::ERROR;
+  kept_ = stands_ ? alarm.recording() : "";
+}
+
+void FlightRecorder::onReport(MonitorState& state) {
+  if (enabled()) {
+    state.recorder = report();
+  }
+}
+
+bool FlightRecorder::onDump(std_srvs::Trigger::Request& /*request*/,
+                            std_srvs::Trigger::Response& response) {
+  const std::optional<std::string> path = dump();
+  const Report now = report();
+  response.success = path && now.files.error.empty();
   if (!enabled()) {
-    return "";
+    response.message = "there is no flight recorder: ~recorder/duration is 0";
+  } else if (!path) {
+    response.message = "nothing was heard yet";
+  } else if (!now.files.error.empty()) {
+    response.message = now.files.error + "; it is tried again";
+  } else {
+    response.message = "the last " + ros1::number(now.seconds) + " s go to " + *path;
   }
-  if (!pending_) {
-    pending_ = Pending{newPath(RecorderFolder::Cause::kAlarm), now + after_};
-  }
-  kept_ = pending_->path;
-  return kept_;
+  return true;
 }
 
 std::optional<std::string> FlightRecorder::dump() {
@@ -96,13 +131,13 @@ std::optional<std::string> FlightRecorder::dump() {
   return dumped;
 }
 
-void FlightRecorder::finish(bool alarm_stands) {
+void FlightRecorder::finish() {
   if (std::exchange(finished_, true)) {
     return;
   }
   if (pending_) {
     write(std::exchange(pending_, std::nullopt)->path);
-  } else if (alarm_stands && heardAnything()) {
+  } else if (stands_ && heardAnything()) {
     write(newPath(RecorderFolder::Cause::kShutdown));
   }
   writer_.finish();
@@ -117,7 +152,7 @@ FlightRecorder::Report FlightRecorder::report() const {
 }
 
 void FlightRecorder::keep(self_awareness::EventLog part) {
-  bytes_ += bytesOf(part);
+  bytes_ += ros1::bytesOf(part);
   parts_.push_back(std::make_shared<const self_awareness::EventLog>(std::move(part)));
   while (parts_.size() > 1 &&
          (bytes_ > most_bytes_ ||
@@ -132,7 +167,7 @@ void FlightRecorder::forgetOldest() {
   forgotten_types_.insert(forgotten_types_.end(), oldest.new_types.begin(),
                           oldest.new_types.end());
   first_ = static_cast<std::int64_t>(oldest.heard_until.toNSec());
-  bytes_ -= bytesOf(oldest);
+  bytes_ -= ros1::bytesOf(oldest);
   parts_.pop_front();
 }
 
@@ -144,8 +179,8 @@ std::string FlightRecorder::newPath(RecorderFolder::Cause cause) {
 
 void FlightRecorder::write(const std::string& path) {
   packer_.flush(last_);
-  const Source source = source_();
-  RecordedLog recording;
+  const ros1::LogSource source = source_();
+  ros1::RecordedLog recording;
   recording.start = ros1::startOfRecording(source.encoding, *first_);
   recording.graph = source.graph;
   recording.types_before = forgotten_types_;
@@ -153,7 +188,7 @@ void FlightRecorder::write(const std::string& path) {
   const RecorderFolder folder = folder_;
   writer_.add({path, bytes_, [folder, recording, kept = kept_](const std::string& file) {
                  folder.create();
-                 writeLog(recording, file);
+                 ros1::writeLog(recording, file);
                  folder.removeOldest(kept);
                }});
 }

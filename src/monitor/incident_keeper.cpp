@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "diagnostics.h"
 #include "ros/verdict/incidents_file.h"
 #include "self_awareness/ros/ros_time.h"
+#include "session.h"
 
 namespace self_awareness {
 namespace {
@@ -26,9 +28,11 @@ bool leaveAlone(self_awareness::Incident& incident) {
 
 }  // namespace
 
-IncidentKeeper::IncidentKeeper(RecorderFolder folder)
+IncidentKeeper::IncidentKeeper(RecorderFolder folder,
+                               std::function<void(const self_awareness::Incidents&)> publish)
     : folder_(std::move(folder)),
       path_(folder_.pathOfIncidents()),
+      publish_(std::move(publish)),
       folded_(kRepeatsWithin, ros1::kMostIncidents),
       writer_(kPause) {}
 
@@ -51,6 +55,32 @@ void IncidentKeeper::restore(std::optional<std::uint64_t> standing) {
   folded_.restore(std::move(known));
   if (!written_) {
     write();
+  }
+  publish_(incidents_);
+}
+
+void IncidentKeeper::onStart(const Session& session, const std::string& path) {
+  session_ = &session;
+  model_ = path;
+}
+
+void IncidentKeeper::onAlarm(const ros1::AlarmState& alarm) {
+  for (const std::optional<core::Alarm>* each : {&alarm.ended(), &alarm.standing()}) {
+    if (*each) {
+      add(**each, session_->graph(), alarm.recording(), model_);
+    }
+  }
+  publish_(incidents_);
+}
+
+void IncidentKeeper::addNearMiss(const core::Alarm& alarm) {
+  add(alarm, session_->graph(), "", model_);
+  publish_(incidents_);
+}
+
+void IncidentKeeper::onReport(MonitorState& state) {
+  if (state.keeper_error.empty()) {
+    state.keeper_error = error();
   }
 }
 
@@ -76,17 +106,18 @@ void IncidentKeeper::add(const core::Alarm& alarm, const core::SourceGraph& grap
   }
 }
 
-void IncidentKeeper::advance(std::int64_t now) {
-  if (!written_ && now - written_at_ >= kNearMissesEvery) {
-    written_at_ = now;
+void IncidentKeeper::onTick(const Moment& now) {
+  now_ = now;
+  if (!written_ && now.steady - written_at_ >= kNearMissesEvery) {
+    written_at_ = now.steady;
     write();
   }
 }
 
-void IncidentKeeper::finish(std::int64_t now) {
+void IncidentKeeper::finish() {
   for (self_awareness::Incident& each : incidents_.incidents) {
     if (leaveAlone(each)) {
-      each.ended = std::max(each.ended, ros1::toRosTime(now));
+      each.ended = std::max(each.ended, ros1::toRosTime(now_.ros));
       written_ = false;
     }
   }

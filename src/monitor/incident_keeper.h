@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 
-#include "file_writer.h"
+#include "node/file_writer.h"
+#include "part.h"
 #include "recorder_folder.h"
 #include "self_awareness/Incidents.h"
 #include "self_awareness/core/verdict/alarm.h"
@@ -19,7 +21,7 @@ namespace self_awareness {
 /// nothing is recorded.
 ///
 /// Belongs to the thread that judges; a thread of its own waits for the disk.
-class IncidentKeeper {
+class IncidentKeeper : public Part {
  public:
   /// An alarm of the same cause so long after the last one is a repetition of it [ns].
   static constexpr std::int64_t kRepeatsWithin = 600'000'000'000;
@@ -27,7 +29,9 @@ class IncidentKeeper {
   /// at once.
   static constexpr std::int64_t kNearMissesEvery = 60'000'000'000;
 
-  explicit IncidentKeeper(RecorderFolder folder);
+  /// @param publish called when an incident is opened, has grown, or is over
+  IncidentKeeper(RecorderFolder folder,
+                 std::function<void(const self_awareness::Incidents&)> publish);
 
   /// Reads the file: to be called first. What is open there is known no more, unless its alarm
   /// stands again. A file that is damaged is named in the log, and is written anew with the next
@@ -40,11 +44,15 @@ class IncidentKeeper {
   /// @param model path of the model that judges
   void add(const core::Alarm& alarm, const core::SourceGraph& graph, const std::string& recording,
            const std::string& model);
-  /// Time has passed. @param now steady time [ns]
-  void advance(std::int64_t now);
+  /// Something was unusual, and is over. @param alarm without a level
+  void addNearMiss(const core::Alarm& alarm);
+  void onStart(const Session& session, const std::string& path) override;
+  void onAlarm(const ros1::AlarmState& alarm) override;
+  void onTick(const Moment& now) override;
+  void onReport(MonitorState& state) override;
   /// Nobody watches what is open from now on. Writes what is not written yet, and waits for the
-  /// disk; nothing is kept after it. @param now ROS time [ns]
-  void finish(std::int64_t now);
+  /// disk.
+  void finish() override;
 
   /// The last incidents.
   const self_awareness::Incidents& incidents() const { return incidents_; }
@@ -61,10 +69,14 @@ class IncidentKeeper {
 
   const RecorderFolder folder_;
   const std::string path_;
+  const std::function<void(const self_awareness::Incidents&)> publish_;
+  const Session* session_ = nullptr;  // that judges; null: none does yet
+  std::string model_;                 // path of its file
   core::Incidents folded_;
   std::map<std::uint64_t, Source> sources_;  // by id of the incident
   self_awareness::Incidents incidents_;
   bool written_ = true;
+  Moment now_;                   // of the last tick
   std::int64_t written_at_ = 0;  // [ns of steady time]
   FileWriter writer_;
 };

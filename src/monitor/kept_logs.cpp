@@ -5,10 +5,11 @@
 #include <regex>
 #include <utility>
 
-#include "recorded_log.h"
+#include "diagnostics.h"
 #include "recorder_folder.h"
 #include "ros/now.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
+#include "session.h"
 
 namespace self_awareness {
 namespace {
@@ -46,8 +47,8 @@ void removeOldest(const std::string& folder, std::uint64_t most_bytes) {
 
 }  // namespace
 
-KeptLogs::KeptLogs(const KeptLogsParameters& parameters,
-                   std::function<FlightRecorder::Source()> source, std::int64_t robot_start)
+KeptLogs::KeptLogs(const KeptLogsParameters& parameters, std::function<ros1::LogSource()> source,
+                   std::int64_t robot_start)
     : parameters_(parameters),
       source_(std::move(source)),
       robot_start_(robot_start),
@@ -58,13 +59,17 @@ void KeptLogs::setModel(const std::string& path, bool calibrated) {
   folder_ = enabled() && calibrated ? filesystem::absolute(path).string() + kBeside : "";
 }
 
-void KeptLogs::add(const core::Event& event, const core::Vocabulary& vocabulary) {
+void KeptLogs::onStart(const Session& session, const std::string& path) {
+  setModel(path, session.calibrated());
+}
+
+void KeptLogs::onEvent(const core::Event& event, const core::Vocabulary& vocabulary) {
   if (folder_.empty() || finished_) {
     return;
   }
   if (!packer_) {
     packer_.emplace([this](self_awareness::EventLog part) {
-      bytes_ += bytesOf(part);
+      bytes_ += ros1::bytesOf(part);
       parts_.push_back(std::make_shared<const self_awareness::EventLog>(std::move(part)));
     });
     first_ = event.stamp;
@@ -82,24 +87,24 @@ void KeptLogs::add(const core::Event& event, const core::Vocabulary& vocabulary)
   }
 }
 
-void KeptLogs::add(const core::Waiting& waiting) {
+void KeptLogs::onWaiting(const core::Waiting& waiting) {
   if (packer_ && why_.empty()) {
     packer_->add(waiting);
   }
 }
 
-void KeptLogs::advance(std::int64_t now) {
+void KeptLogs::onTick(const Moment& now) {
   if (!packer_) {
     return;
   }
-  last_ = std::max(last_, now);
+  last_ = std::max(last_, now.heard_until);
   packer_->advance(last_);
-  if (last_ - first_ >= kLongest || bytes_ >= kMostBytes) {
+  if (last_ - first_ >= kLongestStretch || bytes_ >= kMostBytes) {
     endStretch();
   }
 }
 
-void KeptLogs::leaveOut(const std::string& why) {
+void KeptLogs::onNotNormal(const std::string& why) {
   if (packer_ && why_.empty()) {
     why_ = why;
     parts_.clear();
@@ -114,7 +119,7 @@ void KeptLogs::endStretch() {
   if (!why_.empty()) {
     ++report_.left_out;
     report_.why = why_;
-  } else if (last_ - first_ >= kShortest) {
+  } else if (last_ - first_ >= kShortestStretch) {
     write();
   }
   packer_.reset();
@@ -125,8 +130,8 @@ void KeptLogs::endStretch() {
 
 void KeptLogs::write() {
   packer_->flush(last_);
-  const FlightRecorder::Source source = source_();
-  RecordedLog log;
+  const ros1::LogSource source = source_();
+  ros1::RecordedLog log;
   log.start = ros1::startOfRecording(source.encoding, first_, robot_start_);
   log.graph = source.graph;
   log.parts = parts_;
@@ -137,21 +142,27 @@ void KeptLogs::write() {
        [log = std::move(log), folder = folder_,
         most = static_cast<std::uint64_t>(parameters_.disk) * kMegabyte](const std::string& file) {
          filesystem::create_directories(folder);
-         writeLog(log, file);
+         ros1::writeLog(log, file);
          removeOldest(folder, most);
        }});
 }
 
-void KeptLogs::onRobotStart(std::int64_t robot_start) {
+void KeptLogs::onRobotStart(std::int64_t at) {
   endStretch();
   mode_.reset();
-  robot_start_ = robot_start;
+  robot_start_ = at;
 }
 
 void KeptLogs::finish() {
   if (!std::exchange(finished_, true)) {
     endStretch();
     writer_.finish();
+  }
+}
+
+void KeptLogs::onReport(MonitorState& state) {
+  if (enabled()) {
+    state.kept_logs = report();
   }
 }
 

@@ -8,13 +8,15 @@
 #include <string>
 #include <vector>
 
-#include "file_writer.h"
-#include "flight_recorder.h"
+#include "node/file_writer.h"
+#include "part.h"
+#include "ros/bag/recorded_log.h"
 #include "self_awareness/EventLog.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
+#include "stretch.h"
 
 namespace self_awareness {
 
@@ -30,11 +32,8 @@ struct KeptLogsParameters {
 ///
 /// It belongs to the thread that judges; files are written by the thread of a FileWriter. Times
 /// are ROS time [ns].
-class KeptLogs {
+class KeptLogs : public Part {
  public:
-  /// Length of a stretch [ns]; the last one before the end may be shorter.
-  static constexpr std::int64_t kLongest = 1800 * core::kNanosecondsPerSecond;
-  static constexpr std::int64_t kShortest = 10 * core::kNanosecondsPerSecond;
   /// Of the events in memory; a stretch that has more ends early.
   static constexpr std::size_t kMostBytes = 32000000;
 
@@ -47,7 +46,7 @@ class KeptLogs {
 
   /// @param source called when a stretch is written
   /// @param robot_start when the robot was started: wall time [ns]
-  KeptLogs(const KeptLogsParameters& parameters, std::function<FlightRecorder::Source()> source,
+  KeptLogs(const KeptLogsParameters& parameters, std::function<ros1::LogSource()> source,
            std::int64_t robot_start);
   KeptLogs(const KeptLogs&) = delete;
   KeptLogs& operator=(const KeptLogs&) = delete;
@@ -57,31 +56,27 @@ class KeptLogs {
   /// @param path of the model
   /// @param calibrated else nobody can say what is normal, and nothing is kept
   void setModel(const std::string& path, bool calibrated);
-  /// Takes in the next event.
-  /// @param vocabulary that its id is of; it may grow until endStretch()
-  void add(const core::Event& event, const core::Vocabulary& vocabulary);
-  /// Takes in how the machine was.
-  void add(const core::Waiting& waiting);
-  /// Nothing else was heard before `now`.
-  void advance(std::int64_t now);
-  /// The stretch is not normal operation, and will not be kept.
-  /// @param why in words
-  void leaveOut(const std::string& why);
-  /// The events to come have nothing to do with those before.
-  void endStretch();
-  /// The master was restarted: the robot is taken for started again.
-  /// @param robot_start wall time [ns]
-  void onRobotStart(std::int64_t robot_start);
-  /// Ends the stretch and waits for the disk; nothing is kept after it.
-  void finish();
+  void onStart(const Session& session, const std::string& path) override;
+  void onEvent(const core::Event& event, const core::Vocabulary& vocabulary) override;
+  void onWaiting(const core::Waiting& waiting) override;
+  void onTick(const Moment& now) override;
+  /// The stretch will not be kept.
+  void onNotNormal(const std::string& why) override;
+  /// Ends the stretch.
+  void onCut(Cut /*why*/) override { endStretch(); }
+  void onRobotStart(std::int64_t at) override;
+  void onReport(MonitorState& state) override;
+  /// Ends the stretch and waits for the disk.
+  void finish() override;
 
   Report report() const;
 
  private:
+  void endStretch();
   void write();
 
   const KeptLogsParameters parameters_;
-  const std::function<FlightRecorder::Source()> source_;
+  const std::function<ros1::LogSource()> source_;
   std::int64_t robot_start_;
   std::string folder_;                          // empty: nothing is kept
   std::optional<ros1::EventLogPacker> packer_;  // of the stretch; none: it has not begun

@@ -42,6 +42,17 @@ void LogQuotes::add(core::EventId id, const core::EventType& type, const ros1::C
   }
 }
 
+void LogQuotes::onCut(Cut why) {
+  if (why == Cut::kOtherModel) {
+    words_.clear();
+  }
+}
+
+void LogQuotes::onVerdict(core::Verdict& verdict, ros1::Circumstances& /*circumstances*/) {
+  explain(verdict.suspects);
+  explain(verdict.new_suspects);
+}
+
 void LogQuotes::explain(std::vector<core::Suspect>& suspects) const {
   for (core::Suspect& suspect : suspects) {
     const auto words = words_.find(suspect.id);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "part.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/verdict/suspect.h"
 #include "self_awareness/ros/live/live_events.h"
@@ -13,7 +14,7 @@ namespace self_awareness {
 
 /// Remembers the last line on /rosout of each event type that training never saw, so that a node
 /// that logs an error for the first time is named with what it said.
-class LogQuotes {
+class LogQuotes : public Part {
  public:
   /// Longest quote [bytes].
   static constexpr std::size_t kLongest = 200;
@@ -21,11 +22,13 @@ class LogQuotes {
   /// Takes in a message of an event type that the model does not know.
   void add(core::EventId id, const core::EventType& type, const ros1::Content& content);
   /// Forgets all: ids mean something else from now on.
-  void clear() { words_.clear(); }
+  void onCut(Cut why) override;
   /// Gives suspects of these event types the words.
-  void explain(std::vector<core::Suspect>& suspects) const;
+  void onVerdict(core::Verdict& verdict, ros1::Circumstances& circumstances) override;
 
  private:
+  void explain(std::vector<core::Suspect>& suspects) const;
+
   std::map<core::EventId, std::string> words_;
 };
 

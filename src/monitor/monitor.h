@@ -4,34 +4,31 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/service_server.h>
-#include <std_srvs/Trigger.h>
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "accept_calls.h"
+#include "accept_service.h"
 #include "alarm_keeper.h"
-#include "diagnostics.h"
 #include "drift_keeper.h"
 #include "flight_recorder.h"
+#include "host.h"
 #include "incident_keeper.h"
 #include "kept_logs.h"
-#include "live_source.h"
 #include "log_quotes.h"
 #include "mute_calls.h"
+#include "node/live_source.h"
+#include "node/run_node.h"
 #include "not_heard.h"
 #include "operator_calls.h"
+#include "operator_services.h"
 #include "parameters.h"
-#include "restarts.h"
+#include "part.h"
+#include "reports.h"
+#include "restart_watch.h"
 #include "ros/verdict/announcer.h"
-#include "ros/verdict/heard_tally.h"
-#include "run_node.h"
-#include "self_awareness/core/verdict/detector.h"
-#include "self_awareness/ros/graph.h"
-#include "self_awareness/ros/model/model_file.h"
 #include "session.h"
 
 namespace self_awareness {
@@ -137,7 +134,7 @@ namespace self_awareness {
 /// a queue of its own. What may block on the network is done by the thread of Discovery, what
 /// waits for the disk by those of FileWriter. They share what has arrived (Arrivals), what the
 /// master said (Discovery) and the files to write (FileWriter), each with a lock (Guarded).
-class Monitor : public NodeProgram, public LiveSource::Listener {
+class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
  public:
   /// @param name full name of the node or nodelet, for the diagnostics
   /// @throw std::invalid_argument if a parameter is out of range
@@ -147,22 +144,10 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
 
-  /// Judges no more, and writes what the flight recorder has to write.
+  /// Judges no more, and writes what must not be lost.
   void finish() override;
 
  private:
-  using Call = ros::ServiceEvent<std_srvs::Trigger::Request, std_srvs::Trigger::Response>;
-
-  /// Starts with the model of a file; if that fails, all stays as it was.
-  /// @throw ros1::ModelFileError if it cannot be read, or its calibration does not fit it
-  void load(const std::string& path);
-  /// @throw ros1::ModelFileError as load()
-  std::unique_ptr<Session> makeSession(const std::string& path);
-  /// The file that ~model names now.
-  /// @throw std::invalid_argument if it is no text
-  std::string modelPath() const;
-  void startSession(std::unique_ptr<Session> session);
-
   void onEvent(const core::Event& event) override;
   void onContent(core::EventId id, const ros1::Content& content) override;
   void onClockSet(std::int64_t now) override;
@@ -173,40 +158,37 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void onSenders(const core::Senders& senders) override;
   void onMasterRestart(std::int64_t now) override;
   void onTick(std::int64_t now) override;
-  void onReport() override;
+  void onReport() override { reports_.publish(parts_); }
 
+  Session* session() override { return session_.get(); }
+  const MonitorParameters& parameters() const override { return parameters_; }
+  const LiveSource& live() const override { return *live_; }
+  const ros1::AlarmState& alarm() const override { return announcer_.alarm(); }
+  std::string mutedBy(const std::string& component) const override;
+  void standDown(const std::string& message) override;
+  void nearMiss(const core::Alarm& alarm) override { incidents_.addNearMiss(alarm); }
+  void notNormal(const std::string& why) override;
+  void report() override { live_->report(); }
+
+  /// Offers the services of all parts. Returns their full names.
+  std::vector<std::string> advertise();
+  /// Starts with the model of a file; if that fails, all stays as it was.
+  /// @throw ros1::ModelFileError if it cannot be read, or its calibration does not fit it
+  void load(const std::string& path);
+  /// Reads ~model and its file again. Returns why it failed; empty: it did not.
+  std::string reload();
   /// Goes on with the incidents, and with an alarm that stood when the monitor ended.
   void resume();
-  void onVerdict(const core::Verdict& verdict);
-  /// What is heard now is not normal operation.
-  /// @param why in words
-  void notNormal(const std::string& why);
-  bool onReset(Call& call);
-  bool onClear(Call& call);
-  bool onDump(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  bool onReload(Call& call);
-
-  /// What the clocks say now.
-  static ros1::HeardTally::Moment momentNow();
   void restart();
-  /// Says that what stood is over, although no window brought that about.
-  void standDown(const std::string& message);
-  /// The same, because somebody called a service; keeps on record who.
-  void standDownFor(const Call& call, const std::string& service, const std::string& message);
-  void publishAlarm(const self_awareness::SelfAwareness& alarm);
-  /// Says what has become of the incidents by the last change of the alarm.
-  void publishIncidents();
-  /// There is a mute more or less.
-  void onMutes();
-  /// What ~accept may refer to; none: there is no model, or it is the paper's detector that
-  /// judges.
-  std::optional<Acceptable> acceptable() const;
-  /// The first event of a type has come since its node was started again.
-  void onFirstOfRestarted(const core::Event& event);
-  /// Says who was started again, and is back.
-  void followRestarts(std::int64_t now);
-  /// Something more is accepted, or something was taken back.
-  void onAccepted(const std::string& caller, bool undo);
+  void onVerdict(const core::Verdict& verdict);
+  /// Calls a hook of all parts.
+  template <typename Hook, typename... Arguments>
+  void all(Hook hook, Arguments&&... arguments) {
+    for (Part* part : parts_) {
+      (part->*hook)(arguments...);
+    }
+  }
+  ros1::LogSource source() const { return {session_->encoding(), live_->graph()}; }
 
   ros::CallbackQueue queue_;
   ros::NodeHandle private_node_handle_;
@@ -214,30 +196,24 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   ros::Publisher status_publisher_;
   ros::Publisher alarm_publisher_;
   ros::Publisher incidents_publisher_;
-  ros::Publisher components_publisher_;
   std::vector<ros::ServiceServer> services_;
-  Diagnostics diagnostics_;
-
-  std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
-  NotHeard not_heard_;
-  LogQuotes quotes_;
-  OperatorCalls calls_;
-  MuteCalls mutes_;
-  AcceptCalls accepts_;
-  std::int64_t started_at_ = 0;     // when the model began to judge [ns of steady time]
-  std::int64_t components_at_ = 0;  // they were published last [ns of steady time]
-  std::int64_t longest_pause_ = 0;  // of this program, since the last report [ns of steady time]
   ros1::Announcer announcer_;
-  ros1::HeardTally heard_;
+
+  OperatorCalls calls_;
+  Reports reports_;
+  OperatorServices operators_;
   FlightRecorder recorder_;
   KeptLogs kept_logs_;
   DriftKeeper drift_;
+  NotHeard not_heard_;
+  LogQuotes quotes_;
+  RestartWatch restarts_;
   AlarmKeeper keeper_;
   IncidentKeeper incidents_;
-  Restarts restarts_;
-  std::string alarm_file_;            // of the alarm that was raised last
-  std::vector<std::string> mode_;     // components that are off together, as is accepted
+  AcceptService accepts_;
+  MuteCalls mutes_;
+  const std::vector<Part*> parts_;    // mutes last: they take out what others tell
   std::unique_ptr<LiveSource> live_;  // last: its listener uses all of the above
 };
 

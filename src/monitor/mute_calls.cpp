@@ -7,11 +7,12 @@
 #include <stdexcept>
 #include <utility>
 
+#include "diagnostics.h"
 #include "ros/now.h"
 #include "ros/text.h"
-#include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/encoding.h"
+#include "session.h"
 
 namespace self_awareness {
 namespace {
@@ -75,26 +76,58 @@ core::Mute muteOf(const Mute::Request& request) {
 
 }  // namespace
 
-MuteCalls::MuteCalls(OperatorCalls& calls, std::function<void()> on_change)
-    : calls_(calls), on_change_(std::move(on_change)) {}
-
 std::vector<ros::ServiceServer> MuteCalls::advertise(ros::NodeHandle& private_node_handle) {
   return {private_node_handle.advertiseService("mute", &MuteCalls::onMute, this),
           private_node_handle.advertiseService("maintenance", &MuteCalls::onMaintenance, this)};
 }
 
-void MuteCalls::advance(std::int64_t now) {
-  const std::vector<core::Mute> over = mutes_.advance(now);
+void MuteCalls::onTick(const Moment& now) {
+  if (mutesAll()) {
+    host_.notNormal("maintenance");
+  }
+  const std::vector<core::Mute> over = mutes_.advance(now.steady);
   for (const core::Mute& mute : over) {
     ROS_WARN("mute ended, since its time is over: %s; %s", what(mute).c_str(),
              counts(mute).c_str());
   }
   if (!over.empty()) {
-    on_change_();
+    onChange();
   }
 }
 
-bool MuteCalls::onStanding(const std::optional<core::Alarm>& standing, const Session& session) {
+void MuteCalls::onChange() {
+  if (mutesAll()) {
+    host_.notNormal("maintenance");
+  }
+  if (host_.session() != nullptr) {
+    if (onStanding(host_.alarm().standing())) {
+      log(host_.alarm().message());
+    }
+    host_.report();
+  }
+}
+
+void MuteCalls::onAlarm(const ros1::AlarmState& alarm) {
+  onStanding(alarm.standing());
+  log(alarm.message());
+}
+
+void MuteCalls::onReport(MonitorState& state) {
+  state.communication.muted = ofWhatStands();
+  for (const core::Mute& mute : mutes_.list()) {
+    state.mutes.push_back(what(mute) + " " + until(mute) + ", by " + mute.by + "; " +
+                          counts(mute));
+  }
+  for (auto& [component, restarts] : state.communication.restarts) {
+    restarts.second = restarts.second && ofComponent(component).empty();
+  }
+  const auto is_muted = [&](const auto& each) { return !ofComponent(each.component).empty(); };
+  state.drift.erase(std::remove_if(state.drift.begin(), state.drift.end(), is_muted),
+                    state.drift.end());
+}
+
+bool MuteCalls::onStanding(const std::optional<core::Alarm>& standing) {
+  const Session& session = *host_.session();
   for (const core::Mute& mute :
        mutes_.onStanding(standing, session.vocabulary(), session.graph())) {
     ROS_WARN("mute ended, since all is normal again: %s; %s", what(mute).c_str(),
@@ -128,14 +161,6 @@ std::string MuteCalls::ofWhatStands() const {
 
 std::string MuteCalls::ofComponent(const std::string& component) const {
   return reasonOf(mutes_.ofComponent(component));
-}
-
-std::vector<std::string> MuteCalls::inWords() const {
-  std::vector<std::string> words;
-  for (const core::Mute& mute : mutes_.list()) {
-    words.push_back(what(mute) + " " + until(mute) + ", by " + mute.by + "; " + counts(mute));
-  }
-  return words;
 }
 
 bool MuteCalls::onMute(Call& call) {
@@ -186,7 +211,7 @@ void MuteCalls::answer(const core::Mute& mute, double duration, Response& respon
                                  "several by a *";
   }
   ROS_INFO("%s", response.message.c_str());
-  on_change_();
+  onChange();
 }
 
 }  // namespace self_awareness

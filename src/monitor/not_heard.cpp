@@ -1,28 +1,17 @@
 #include "not_heard.h"
 
-#include <diagnostic_msgs/DiagnosticStatus.h>
-
 #include <algorithm>
-#include <iterator>
 
-#include "ros/text.h"
+#include "diagnostics.h"
+#include "node/live_source.h"
+#include "parameters.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/verdict/name_pattern.h"
 #include "self_awareness/ros/encoding.h"
+#include "session.h"
 
 namespace self_awareness {
 namespace {
-
-constexpr std::size_t kMostInMessage = 3;
-constexpr std::size_t kMostOfName = 100;  // bytes
-
-std::string describe(const ros1::Unheard& unheard) {
-  if (unheard.node.empty()) {
-    return unheard.why;
-  }
-  return ros1::printable(unheard.node, kMostOfName) + " on " +
-         ros1::printable(unheard.topic, kMostOfName) + " (" + unheard.why + ")";
-}
 
 std::string notHeard(const std::string& why) {
   return "not heard by the monitor: " + why;
@@ -40,28 +29,25 @@ std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
   return unheard;
 }
 
-std::vector<std::string> inWords(const std::vector<ros1::Unheard>& unheard) {
-  std::vector<std::string> words;
-  std::transform(unheard.begin(), unheard.end(), std::back_inserter(words), describe);
-  return words;
+NotHeard::NotHeard(Host& host) : host_(host) {}
+
+void NotHeard::onVerdict(core::Verdict& verdict, ros1::Circumstances& /*circumstances*/) {
+  if (!verdict.suspects.empty()) {
+    const Session& session = *host_.session();
+    set(host_.live().discovery().unheard(), *session.encoder());
+    explain(verdict.suspects, session.vocabulary());
+    explain(verdict.new_suspects, session.vocabulary());
+  }
 }
 
-void tellUnheard(const std::vector<ros1::Unheard>& unheard, ros1::ListsAre lists,
-                 diagnostic_updater::DiagnosticStatusWrapper& status) {
-  status.add("publishers not heard", unheard.size());
-  if (unheard.empty()) {
-    return;
+void NotHeard::onReport(MonitorState& state) {
+  if (host_.session() != nullptr) {
+    const ros1::Encoder& encoder = *host_.session()->encoder();
+    state.unheard =
+        withoutOptional(host_.live().discovery().unheard(), host_.parameters().optional, encoder);
+    set(state.unheard, encoder);
+    state.communication.not_heard = components();
   }
-  const std::vector<std::string> words = inWords(unheard);
-  std::string message = "not heard: ";
-  for (std::size_t i = 0; i < std::min(words.size(), kMostInMessage); ++i) {
-    message += (i > 0 ? ", " : "") + words[i];
-  }
-  if (words.size() > kMostInMessage) {
-    message += " and " + std::to_string(words.size() - kMostInMessage) + " more";
-  }
-  status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, message);
-  ros1::tellNumbered("not heard", words, lists, status);
 }
 
 void NotHeard::set(const std::vector<ros1::Unheard>& unheard, const ros1::Encoder& encoder) {

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <diagnostic_updater/DiagnosticStatusWrapper.h>
-
-#include <cstddef>
 #include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "ros/verdict/status_lists.h"
+#include "host.h"
+#include "part.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/encoding.h"
@@ -23,28 +21,27 @@ std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
                                            const std::vector<std::string>& optional,
                                            const ros1::Encoder& encoder);
 
-/// Who is not heard, where, and why, in words.
-std::vector<std::string> inWords(const std::vector<ros1::Unheard>& unheard);
-
-/// Adds to the status of a node who it does not hear, though the master names them: a warning.
-void tellUnheard(const std::vector<ros1::Unheard>& unheard, ros1::ListsAre lists,
-                 diagnostic_updater::DiagnosticStatusWrapper& status);
-
 /// Keeps apart who is silent and who the monitor cannot hear: where the network between them is
 /// gone, or the publisher does not let the monitor in, nothing is known of who does not come.
 ///
 /// A node that is dead is silent, as its machine says that nobody listens at its address.
-class NotHeard {
+class NotHeard : public Part {
  public:
+  explicit NotHeard(Host& host);
+
+  /// Says so of suspects that do not come, or come late.
+  void onVerdict(core::Verdict& verdict, ros1::Circumstances& circumstances) override;
+  void onReport(MonitorState& state) override;
+
+ private:
   /// Takes over who is not heard now.
   /// @param encoder gives them the names that events have
   void set(const std::vector<ros1::Unheard>& unheard, const ros1::Encoder& encoder);
-  /// Says so of suspects that do not come, or come late.
   void explain(std::vector<core::Suspect>& suspects, const core::Vocabulary& vocabulary) const;
   /// In words, by component (core::componentOf()).
   std::map<std::string, std::string> components() const;
 
- private:
+  Host& host_;
   std::map<std::pair<std::string, std::string>, std::string> why_;  // by source and topic
 };
 

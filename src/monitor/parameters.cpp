@@ -1,8 +1,10 @@
 #include "parameters.h"
 
+#include <ros/param.h>
+
 #include <cmath>
 
-#include "parameter_reader.h"
+#include "node/parameter_reader.h"
 
 namespace self_awareness {
 namespace {
@@ -75,6 +77,7 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
       reader.seconds("diagnostic_period", defaults.live.diagnostic_period, {0.1, kHour});
   parameters.diagnostic_bytes = static_cast<std::size_t>(reader.wholeNumber(
       "diagnostic_bytes", static_cast<int>(defaults.diagnostic_bytes), {100, 10000000}));
+  ros::param::get("/run_id", parameters.run_id);
   reader.warnOfUnknown();
   return parameters;
 }

@@ -8,7 +8,7 @@
 
 #include "flight_recorder.h"
 #include "kept_logs.h"
-#include "live_source.h"
+#include "node/live_source.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/core/verdict/detector.h"
 
@@ -29,6 +29,7 @@ struct MonitorParameters {
   std::string hardware_id = ros1::kNoHardware;  ///< ~hardware_id: of the diagnostics
   RecorderParameters recorder;                  ///< ~recorder/...
   KeptLogsParameters kept_logs;                 ///< ~learn_more, ~learn_more_disk
+  std::string run_id;                           ///< /run_id: of the roscore; empty: not known
 
   /// Reads the parameters, checks and logs them; warns of those it does not know.
   /// @throw std::invalid_argument names the parameter, its value and what it may be

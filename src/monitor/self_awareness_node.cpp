@@ -1,9 +1,9 @@
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
 
-#include "command_line.h"
 #include "monitor.h"
-#include "run_node.h"
+#include "node/command_line.h"
+#include "node/run_node.h"
 
 namespace {
 

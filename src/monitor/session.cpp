@@ -1,6 +1,8 @@
 #include "session.h"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <utility>
 
 #include "ros/content_digest.h"
@@ -15,8 +17,28 @@ namespace self_awareness {
 namespace {
 
 constexpr std::size_t kMostOfText = 60;  // of a message, in a line of the diagnostics [bytes]
+constexpr int kTicksPerWindow = 4;
+// A node of this package has logged and read its parameters before the master knows what it
+// publishes; so long that may take, besides the time until the master is asked [s].
+constexpr double kToBeKnown = 4;
 
 }  // namespace
+
+std::unique_ptr<Session> Session::load(const std::string& path,
+                                       const MonitorParameters& parameters,
+                                       core::Detector::Handler handler) {
+  if (path.empty()) {
+    throw ros1::ModelFileError("~model is not set; give it the path of a model file");
+  }
+  ros1::TrainedModel trained = ros1::loadModel(
+      path, parameters.method == MonitorParameters::Method::kPaper ? ros1::ModelCounts::kDelays
+                                                                   : ros1::ModelCounts::kWatched);
+  try {
+    return std::make_unique<Session>(std::move(trained), parameters, std::move(handler));
+  } catch (const std::invalid_argument& error) {
+    throw ros1::ModelFileError(path + ": " + error.what());
+  }
+}
 
 Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters,
                  core::Detector::Handler handler)
@@ -206,12 +228,17 @@ std::string Session::mode(std::int64_t now) const {
          (model_->knows(mode->id) ? "" : ", not seen in training");
 }
 
-std::set<std::string> Session::topics() const {
-  std::set<std::string> topics;
+LiveSource::Wanted Session::wanted(const std::string& node, double poll_interval) const {
+  LiveSource::Wanted wanted;
+  wanted.encoder = encoder_;
   for (const core::EventType& type : types()) {
-    topics.insert(type.scope);
+    wanted.model_topics.insert(type.scope);
   }
-  return topics;
+  wanted.own_output = ownOutput(node);
+  wanted.window = window();
+  wanted.hold = std::llround((poll_interval + kToBeKnown) * 1e9);
+  wanted.tick = ros::WallDuration(core::toSeconds(window()) / kTicksPerWindow);
+  return wanted;
 }
 
 std::vector<core::EventId> Session::typesOf(const ros1::Publication& publication) const {

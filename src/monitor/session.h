@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "node/live_source.h"
 #include "parameters.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/core/evidence/channel/model.h"
@@ -32,7 +33,12 @@ class Session {
   /// Event types that the model does not know and that are told apart; further ones share an id.
   static constexpr std::size_t kMostUnknownTypes = 1000;
 
+  /// Starts with the model of a file.
   /// @param handler called with the verdict of every window in turn
+  /// @throw ros1::ModelFileError if it cannot be read, or its calibration does not fit it
+  static std::unique_ptr<Session> load(const std::string& path,
+                                       const MonitorParameters& parameters,
+                                       core::Detector::Handler handler);
   /// @throw std::invalid_argument if the calibration does not fit the model
   Session(ros1::TrainedModel trained, const MonitorParameters& parameters,
           core::Detector::Handler handler);
@@ -100,10 +106,10 @@ class Session {
   /// Whether an event is the first of its type since its node was started again.
   bool isFirstOfRestarted(core::EventId id);
 
-  /// The topics of the model's events.
-  std::set<std::string> topics() const;
-  /// What the process `node` (full name) publishes and the model does not know.
-  ros1::OwnOutput ownOutput(const std::string& node) const;
+  /// What this model has to hear.
+  /// @param node full name of the monitor's process, whose own output is left out
+  /// @param poll_interval between two questions to the master [s]
+  LiveSource::Wanted wanted(const std::string& node, double poll_interval) const;
   /// Takes in who listens to whom now. Who was killed, or has gone since, is still upstream of its
   /// victims: edges are added only. The detector learns who does not subscribe as in training.
   /// @param node full name of the monitor's process, which is left out
@@ -117,6 +123,8 @@ class Session {
   /// Takes in what a window says of components.
   void onShares(const core::evidence::Shares& shares);
   core::EventId intern(const core::EventType& type);
+  /// What the process `node` (full name) publishes and the model does not know.
+  ros1::OwnOutput ownOutput(const std::string& node) const;
   /// An event type as people read it, without its datatype.
   std::string sourceAndTopic(core::EventId id) const;
   std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters);

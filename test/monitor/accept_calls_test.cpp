@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "await.h"
+#include "../await.h"
 #include "ros/verdict/accepted_file.h"
 
 namespace self_awareness {

@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "await.h"
+#include "../await.h"
+#include "monitor/stretch.h"
 #include "ros/verdict/drift_file.h"
 
 namespace self_awareness {
@@ -92,11 +93,11 @@ TEST_F(DriftKeeperTest, AMonitorThatIsStartedAgainGoesOnWithTheSampleOfItsRobot)
 
 TEST_F(DriftKeeperTest, WhatIsNotNormalOrShortDoesNotCount) {
   start("one");
-  keeper_->leaveOut();
+  keeper_->onNotNormal("an alarm");
   listen({0.1, 0.1});
-  keeper_->leaveOut();
+  keeper_->onNotNormal("an alarm");
   listen({0.9, 0.1});
-  keeper_->endStretch();
+  keeper_->onCut(Cut::kClockSet);
   listen({0.8, 0.8}, 9);
   EXPECT_EQ(kept(), (std::vector<double>())) << "one was not normal, the next too short";
   EXPECT_FALSE(fs::exists(path_)) << "there is nothing to keep";
@@ -107,10 +108,10 @@ TEST_F(DriftKeeperTest, WhatIsNotNormalOrShortDoesNotCount) {
 
 TEST_F(DriftKeeperTest, AStretchEndsByItself) {
   start("one");
-  listen({0.2, 0.3}, KeptLogs::kLongest / kSecond);
+  listen({0.2, 0.3}, kLongestStretch / kSecond);
   EXPECT_TRUE(await([&] { return fs::exists(path_); }));
   listen({0.9, 0.9}, 60);
-  keeper_->leaveOut();
+  keeper_->onNotNormal("an alarm");
   EXPECT_EQ(kept(), (std::vector<double>{0.2, 0.3})) << "that of before stays";
 }
 
@@ -137,7 +138,7 @@ TEST_F(DriftKeeperTest, AReloadOfTheSameModelForgetsNothing) {
 TEST_F(DriftKeeperTest, WhatIsJudgedAgainIsNoDrift) {
   start("one");
   listen({0.2, 0.3});
-  keeper_->endStretch();
+  keeper_->onCut(Cut::kClockSet);
   keeper_->forget();
   EXPECT_EQ(kept(), (std::vector<double>()));
 }
@@ -166,7 +167,7 @@ TEST_F(DriftKeeperTest, AFileThatCannotBeWrittenIsSaid) {
   start("one");
   EXPECT_EQ(keeper_->error(), "");
   listen({0.2, 0.3});
-  keeper_->endStretch();
+  keeper_->onCut(Cut::kClockSet);
   EXPECT_TRUE(await([&] { return !keeper_->error().empty(); }));
 }
 

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "await.h"
+#include "../await.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 
 namespace self_awareness {
@@ -48,10 +48,28 @@ class FlightRecorderTest : public testing::Test {
   void hear(double from, double to) {
     for (auto i = static_cast<int>(from * 100); i < static_cast<int>(to * 100); ++i) {
       const core::Event event{kStart + i * kSecond / 100, static_cast<core::EventId>(i & 1)};
-      recorder().add(event, vocabulary_);
+      recorder().onEvent(event, vocabulary_);
       heard_.push_back(event);
-      recorder().advance(event.stamp, steady(event.stamp));
+      tick(event.stamp);
     }
+  }
+  void tick(std::int64_t ros) { recorder().onTick({ros, steady(ros), ros}); }
+  /// An alarm is raised. @return path of its file; empty: it has none
+  std::string raise() {
+    core::Verdict verdict;
+    verdict.alarm = true;
+    ros1::Circumstances circumstances;
+    recorder().onVerdict(verdict, circumstances);
+    return circumstances.recording;
+  }
+  /// An alarm of before the start stands.
+  void stand() {
+    SelfAwareness alarm;
+    alarm.level = SelfAwareness::ERROR;
+    alarm.kind = SelfAwareness::DIED;
+    ros1::AlarmState state;
+    state.resume(alarm, kStart, "");
+    recorder().onAlarm(state);
   }
   static std::int64_t steady(std::int64_t ros) { return ros - kStart + kSteady; }
   bool awaitFiles(std::uint64_t number) {
@@ -80,7 +98,7 @@ class FlightRecorderTest : public testing::Test {
 
   const filesystem::path folder_ = filesystem::temp_directory_path() / filesystem::unique_path();
   RecorderParameters parameters_;
-  FlightRecorder::Source source_;
+  ros1::LogSource source_;
   core::Vocabulary vocabulary_;
   std::vector<core::Event> heard_;
   std::unique_ptr<FlightRecorder> recorder_;
@@ -89,7 +107,8 @@ class FlightRecorderTest : public testing::Test {
 TEST_F(FlightRecorderTest, AnAlarmIsWrittenWithWhatFollows) {
   parameters_.after = 5;
   hear(0, 20);
-  const std::string path = recorder().onAlarm(kSteady + 20 * kSecond);
+  tick(kStart + 20 * kSecond);
+  const std::string path = raise();
   EXPECT_EQ(path.rfind((folder_ / "alarm_").string(), 0), 0U) << path;
   hear(20, 24.99);
   EXPECT_EQ(recorder().report().files.written + recorder().report().files.waiting_bytes, 0U);
@@ -106,12 +125,12 @@ TEST_F(FlightRecorderTest, AnAlarmIsWrittenWithWhatFollows) {
 
 TEST_F(FlightRecorderTest, AnAlarmThatFollowsSoonIsInTheSameFile) {
   hear(0, 20);
-  const std::string path = recorder().onAlarm(kSteady + 20 * kSecond);
+  const std::string path = raise();
   hear(20, 25);
-  EXPECT_EQ(recorder().onAlarm(kSteady + 25 * kSecond), path);
+  EXPECT_EQ(raise(), path);
   hear(25, 31);
   ASSERT_TRUE(awaitFiles(1));
-  EXPECT_NE(recorder().onAlarm(kSteady + 31 * kSecond), path);
+  EXPECT_NE(raise(), path);
 }
 
 TEST_F(FlightRecorderTest, TheOldestEventsAreForgotten) {
@@ -131,7 +150,7 @@ TEST_F(FlightRecorderTest, TheOldestEventsAreForgotten) {
 TEST_F(FlightRecorderTest, ManyEventsDoNotFillTheMemory) {
   parameters_.memory = 1;
   for (int i = 0; i < 2000000; ++i) {  // 100 s of 20,000 events a second
-    recorder().add({kStart + i * 50000L, static_cast<core::EventId>(i % 2)}, vocabulary_);
+    recorder().onEvent({kStart + i * 50000L, static_cast<core::EventId>(i % 2)}, vocabulary_);
   }
   EXPECT_LE(recorder().report().bytes, 1000000U);
   EXPECT_GE(recorder().report().bytes, 800000U);
@@ -151,12 +170,12 @@ TEST_F(FlightRecorderTest, AnEventTypeThatWasHeardLongAgoKeepsItsName) {
                             static_cast<core::EventId>(i == 0       ? 1
                                                        : i % 7 == 0 ? 1
                                                                     : 0)};
-    recorder().add(event, vocabulary_);
+    recorder().onEvent(event, vocabulary_);
     heard_.push_back(event);
   }
   const core::EventId late = vocabulary_.intern({"/joy", "/joy", "T"});
   heard_.push_back({kStart + 200 * kSecond, late});
-  recorder().add(heard_.back(), vocabulary_);
+  recorder().onEvent(heard_.back(), vocabulary_);
   const std::string path = recorder().dump().value();
   ASSERT_TRUE(awaitFiles(1));
   const std::vector<core::Event> events = read(path);
@@ -167,8 +186,9 @@ TEST_F(FlightRecorderTest, AnEventTypeThatWasHeardLongAgoKeepsItsName) {
 TEST_F(FlightRecorderTest, SilenceBelongsToIt) {
   parameters_.after = 5;
   hear(0, 20);
-  const std::string path = recorder().onAlarm(kSteady + 21 * kSecond);
-  recorder().advance(kStart + 26 * kSecond, kSteady + 26 * kSecond);
+  tick(kStart + 21 * kSecond);
+  const std::string path = raise();
+  tick(kStart + 26 * kSecond);
   ASSERT_TRUE(awaitFiles(1));
   EXPECT_EQ(ros1::EventLogReader(path, 0).summary().end, kStart + 26 * kSecond);
   expectSame(read(path), 0, 2000);
@@ -176,8 +196,8 @@ TEST_F(FlightRecorderTest, SilenceBelongsToIt) {
 
 TEST_F(FlightRecorderTest, WhatComesAfterARestartIsAnotherRecording) {
   hear(0, 20);
-  const std::string path = recorder().onAlarm(kSteady + 20 * kSecond);
-  recorder().restart();
+  const std::string path = raise();
+  recorder().onCut(Cut::kClockSet);
   ASSERT_TRUE(awaitFiles(1)) << "what follows would be of another time, or another model";
   expectSame(read(path), 0, 2000);
   EXPECT_FALSE(recorder().dump()) << "nothing was heard since";
@@ -190,11 +210,12 @@ TEST_F(FlightRecorderTest, WhatComesAfterARestartIsAnotherRecording) {
 
 TEST_F(FlightRecorderTest, AtTheEndAnAlarmThatStandsIsWritten) {
   hear(0, 1);
-  recorder().finish(false);
+  recorder().finish();
   recorder_.reset();
   EXPECT_FALSE(filesystem::exists(folder_)) << "no alarm stood";
   hear(0, 1);
-  recorder().finish(true);
+  stand();
+  recorder().finish();
   recorder_.reset();
   ASSERT_EQ(files(), 1U);
   EXPECT_EQ(filesystem::directory_iterator(folder_)->path().filename().string().rfind("shutdown_"),
@@ -203,8 +224,8 @@ TEST_F(FlightRecorderTest, AtTheEndAnAlarmThatStandsIsWritten) {
 
 TEST_F(FlightRecorderTest, AtTheEndAFileDoesNotWaitForWhatFollows) {
   hear(0, 1);
-  const std::string path = recorder().onAlarm(kSteady + kSecond);
-  recorder().finish(true);
+  const std::string path = raise();
+  recorder().finish();
   recorder_.reset();
   EXPECT_EQ(files(), 1U) << "the alarm is in its own file already";
   expectSame(read(path), 0, 100);
@@ -214,9 +235,10 @@ TEST_F(FlightRecorderTest, WithoutADurationThereIsNone) {
   parameters_.duration = 0;
   EXPECT_FALSE(recorder().enabled());
   hear(0, 1);
-  EXPECT_EQ(recorder().onAlarm(kSteady), "");
+  EXPECT_EQ(raise(), "");
   EXPECT_FALSE(recorder().dump());
-  recorder().finish(true);
+  stand();
+  recorder().finish();
   recorder_.reset();
   EXPECT_FALSE(filesystem::exists(folder_));
 }

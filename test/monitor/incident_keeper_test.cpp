@@ -39,6 +39,11 @@ class IncidentKeeperTest : public testing::Test {
     suspicion.level = core::Alarm::Level::kSuspicion;
     return suspicion;
   }
+  /// The monitor ends.
+  static void end(IncidentKeeper& keeper) {
+    keeper.onTick({kEnd, 0, kEnd});
+    keeper.finish();
+  }
   void add(IncidentKeeper& keeper, const core::Alarm& alarm, const std::string& file) {
     keeper.add(alarm, graph_, file, "robot.model");
   }
@@ -49,13 +54,13 @@ class IncidentKeeperTest : public testing::Test {
 };
 
 TEST_F(IncidentKeeperTest, AnIncidentHasTheFileOfItsFirstAlarm) {
-  IncidentKeeper keeper(folder());
+  IncidentKeeper keeper(folder(), [](const Incidents& /*incidents*/) {});
   keeper.restore(std::nullopt);
   EXPECT_TRUE(keeper.incidents().incidents.empty());
   add(keeper, alarm(10, "/a"), "first.bag");
   add(keeper, alarm(20, "/b"), "second.bag");
   add(keeper, alarm(30, "/a"), "third.bag");
-  keeper.finish(kEnd);
+  end(keeper);
   const auto kept = ros1::readIncidents(path_);
   ASSERT_TRUE(kept);
   EXPECT_EQ(*kept, keeper.incidents());
@@ -68,13 +73,13 @@ TEST_F(IncidentKeeperTest, AnIncidentHasTheFileOfItsFirstAlarm) {
 
 TEST_F(IncidentKeeperTest, AnotherStartGoesOnWithThem) {
   {
-    IncidentKeeper keeper(folder());
+    IncidentKeeper keeper(folder(), [](const Incidents& /*incidents*/) {});
     keeper.restore(std::nullopt);
     add(keeper, alarm(10, "/a"), "first.bag");
     add(keeper, alarm(20, "/b", false), "second.bag");
-    keeper.finish(kEnd);
+    end(keeper);
   }
-  IncidentKeeper keeper(folder());
+  IncidentKeeper keeper(folder(), [](const Incidents& /*incidents*/) {});
   keeper.restore(20 * kSecond);
   EXPECT_FALSE(keeper.incidents().incidents[1].over) << "its alarm stands again";
   EXPECT_FALSE(keeper.incidents().incidents[1].unknown);
@@ -89,11 +94,11 @@ TEST_F(IncidentKeeperTest, AnotherStartGoesOnWithThem) {
 }
 
 TEST_F(IncidentKeeperTest, WhatIsOpenWhenTheMonitorEndsIsUnknownSince) {
-  IncidentKeeper keeper(folder());
+  IncidentKeeper keeper(folder(), [](const Incidents& /*incidents*/) {});
   keeper.restore(std::nullopt);
   add(keeper, alarm(10, "/a"), "");
   add(keeper, alarm(20, "/b", false), "");
-  keeper.finish(kEnd);
+  end(keeper);
   const auto kept = ros1::readIncidents(path_).value().incidents;
   EXPECT_FALSE(kept.at(0).unknown) << "it was over";
   EXPECT_TRUE(kept.at(1).over);
@@ -104,44 +109,44 @@ TEST_F(IncidentKeeperTest, WhatIsOpenWhenTheMonitorEndsIsUnknownSince) {
 TEST_F(IncidentKeeperTest, WhatWasOpenWhenTheMonitorWasKilledIsUnknownFromTheNextStartOn) {
   self_awareness::Incidents before;
   {
-    IncidentKeeper keeper(folder());
+    IncidentKeeper keeper(folder(), [](const Incidents& /*incidents*/) {});
     keeper.restore(std::nullopt);
     add(keeper, alarm(20, "/b", false), "");
     before = keeper.incidents();
-    keeper.finish(kEnd);
+    end(keeper);
   }
   ros1::writeIncidents(before, path_);  // as it was: nobody had finished
-  IncidentKeeper keeper(folder());
+  IncidentKeeper keeper(folder(), [](const Incidents& /*incidents*/) {});
   keeper.restore(std::nullopt);
   EXPECT_TRUE(keeper.incidents().incidents.at(0).over);
   EXPECT_TRUE(keeper.incidents().incidents.at(0).unknown);
-  keeper.finish(kEnd);
+  end(keeper);
   const auto kept = ros1::readIncidents(path_).value().incidents;
   EXPECT_TRUE(kept.at(0).unknown) << "the file says so, too";
   EXPECT_EQ(kept.at(0).ended.sec, 20U) << "known until then";
 }
 
 TEST_F(IncidentKeeperTest, NearMissesReachTheFileAtTheEndAtTheLatest) {
-  IncidentKeeper keeper(folder());
+  IncidentKeeper keeper(folder(), [](const Incidents& /*incidents*/) {});
   keeper.restore(std::nullopt);
   const std::int64_t start = 100 * IncidentKeeper::kNearMissesEvery;
   add(keeper, suspicion(10, "/a"), "of_an_alarm_before.bag");
   EXPECT_EQ(keeper.incidents().incidents.at(0).level, SelfAwareness::WARN);
   EXPECT_EQ(keeper.incidents().incidents.at(0).recording, "");
-  keeper.advance(start);
+  keeper.onTick({kEnd, start, 0});
   add(keeper, suspicion(20, "/b"), "");
-  keeper.advance(start + IncidentKeeper::kNearMissesEvery - 1);
-  keeper.finish(kEnd);
+  keeper.onTick({kEnd, start + IncidentKeeper::kNearMissesEvery - 1, 0});
+  end(keeper);
   EXPECT_EQ(ros1::readIncidents(path_)->incidents.size(), 2U) << "it is there at the end";
 }
 
 TEST_F(IncidentKeeperTest, ADamagedFileIsIgnored) {
   std::ofstream(path_) << "damaged";
-  IncidentKeeper keeper(folder());
+  IncidentKeeper keeper(folder(), [](const Incidents& /*incidents*/) {});
   keeper.restore(std::nullopt);
   EXPECT_TRUE(keeper.incidents().incidents.empty());
   add(keeper, alarm(10, "/a"), "");
-  keeper.finish(kEnd);
+  end(keeper);
   EXPECT_EQ(ros1::readIncidents(path_)->incidents.size(), 1U);
 }
 

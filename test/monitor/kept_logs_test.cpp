@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "await.h"
+#include "../await.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 
@@ -21,7 +21,7 @@ namespace filesystem = boost::filesystem;
 constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 constexpr std::int64_t kStart = 1600000000 * kSecond;
 constexpr std::int64_t kRobotStart = kStart - 60 * kSecond;
-constexpr std::int64_t kStretch = KeptLogs::kLongest / kSecond;  // [s]
+constexpr std::int64_t kStretch = kLongestStretch / kSecond;  // [s]
 
 class KeptLogsTest : public testing::Test {
  protected:
@@ -48,8 +48,8 @@ class KeptLogsTest : public testing::Test {
   /// An event each second, one type after the other, from `from` to before `to` [s].
   void hear(std::int64_t from, std::int64_t to) {
     for (std::int64_t i = from; i < to; ++i) {
-      logs().add({kStart + i * kSecond, static_cast<core::EventId>(i & 1)}, vocabulary_);
-      logs().advance(kStart + i * kSecond);
+      logs().onEvent({kStart + i * kSecond, static_cast<core::EventId>(i & 1)}, vocabulary_);
+      logs().onTick({0, 0, kStart + i * kSecond});
     }
   }
   bool awaitFiles(std::uint64_t number) {
@@ -70,7 +70,7 @@ class KeptLogsTest : public testing::Test {
   const std::string model_ = (folder_ / "robot.model").string();
   const std::string kept_ = model_ + ".kept";
   KeptLogsParameters parameters_;
-  FlightRecorder::Source source_;
+  ros1::LogSource source_;
   core::Vocabulary vocabulary_;
   std::unique_ptr<KeptLogs> logs_;
 };
@@ -98,7 +98,7 @@ TEST_F(KeptLogsTest, AStretchIsKeptWhole) {
 TEST_F(KeptLogsTest, EachStretchBeginsWithTheModeThatLasts) {
   const core::EventId mode =
       vocabulary_.intern({"/logic", "/state", core::typeOfMode("T", "DRIVING")});
-  logs().add({kStart, mode}, vocabulary_);
+  logs().onEvent({kStart, mode}, vocabulary_);
   hear(0, 2 * kStretch + 2);
   ASSERT_TRUE(awaitFiles(2));
   for (const std::string& file : files()) {
@@ -111,7 +111,7 @@ TEST_F(KeptLogsTest, EachStretchBeginsWithTheModeThatLasts) {
   }
   // Another model has other ids.
   logs().setModel(model_, true);
-  logs().endStretch();
+  logs().onCut(Cut::kClockSet);
   hear(2 * kStretch + 10, 2 * kStretch + 30);
   logs().finish();
   EXPECT_EQ(files().size(), 3U);
@@ -123,8 +123,8 @@ TEST_F(KeptLogsTest, EachStretchBeginsWithTheModeThatLasts) {
 
 TEST_F(KeptLogsTest, WhatIsNotNormalIsNotKeptAndTheNextStretchIs) {
   hear(0, 60);
-  logs().leaveOut("an alarm");
-  logs().leaveOut("a suspicion");
+  logs().onNotNormal("an alarm");
+  logs().onNotNormal("a suspicion");
   hear(60, kStretch + 1);
   EXPECT_EQ(logs().report().left_out, 1U);
   EXPECT_EQ(logs().report().why, "an alarm");
@@ -147,7 +147,7 @@ TEST_F(KeptLogsTest, TheLastStretchIsKeptUnlessItIsTooShort) {
 
 TEST_F(KeptLogsTest, WhatIsLeftOutAtTheEndIsNotKept) {
   hear(0, 60);
-  logs().leaveOut("an alarm");
+  logs().onNotNormal("an alarm");
   logs().finish();
   hear(60, 61);  // a last event may still come
   EXPECT_TRUE(files().empty());

@@ -5,7 +5,6 @@
 #include <rosgraph_msgs/Log.h>
 
 #include <string>
-#include <vector>
 
 namespace self_awareness {
 namespace {
@@ -24,13 +23,15 @@ ros1::Content line(std::uint8_t level, const std::string& text) {
   return content;
 }
 
-std::string wordsOf(const LogQuotes& quotes, core::EventId id) {
+std::string wordsOf(LogQuotes& quotes, core::EventId id) {
   core::Suspect suspect;
   suspect.id = id;
   suspect.reason = core::strangerIn(1);
-  std::vector<core::Suspect> suspects{suspect};
-  quotes.explain(suspects);
-  return suspects.front().reason.words;
+  core::Verdict verdict;
+  verdict.suspects = {suspect};
+  ros1::Circumstances circumstances;
+  quotes.onVerdict(verdict, circumstances);
+  return verdict.suspects.front().reason.words;
 }
 
 TEST(LogQuotes, ANodeThatLogsAnewIsNamedWithWhatItSaid) {
@@ -42,7 +43,7 @@ TEST(LogQuotes, ANodeThatLogsAnewIsNamedWithWhatItSaid) {
   EXPECT_EQ(wordsOf(quotes, 8), "never seen in training, 1 in this window");
   quotes.add(7, kError, line(8, "again"));
   EXPECT_NE(wordsOf(quotes, 7).find("\"again\""), std::string::npos) << "the last one";
-  quotes.clear();
+  quotes.onCut(Cut::kOtherModel);
   EXPECT_EQ(wordsOf(quotes, 7), "never seen in training, 1 in this window");
 }
 

@@ -96,8 +96,9 @@ core::EventId encode(ros1::ConnectionEncoder& connection, const std::string& dat
 
 TEST(Session, KnowsTheModelsTopicsAndWhatItsOwnProcessPublishes) {
   const Session session(model(), byPaper(), [](const core::Verdict&) {});
-  EXPECT_EQ(session.topics(), (std::set<std::string>{"/pose", "/scan"}));
-  const ros1::OwnOutput own = session.ownOutput("/manager");
+  const LiveSource::Wanted wanted = session.wanted("/manager", 1);
+  EXPECT_EQ(wanted.model_topics, (std::set<std::string>{"/pose", "/scan"}));
+  const ros1::OwnOutput& own = wanted.own_output;
   EXPECT_FALSE(own.covers("/manager", "/pose")) << "the robot's, by the model";
   EXPECT_TRUE(own.covers("/manager", "/watch/status"));
   EXPECT_FALSE(own.covers("/slam", "/watch/status"));
@@ -109,7 +110,7 @@ TEST(Session, KnowsTheModelsNamesOfAnotherRobotsNodesAndTopics) {
   Session session(trained, byPaper(), [](const core::Verdict&) {});
   EXPECT_EQ(session.typesOf({"/r7/slam_4242_1600000000000", "/r7/pose"}),
             (std::vector<core::EventId>{1}));
-  EXPECT_FALSE(session.ownOutput("/r7/manager").covers("/r7/manager", "/r7/pose"));
+  EXPECT_FALSE(session.wanted("/r7/manager", 1).own_output.covers("/r7/manager", "/r7/pose"));
   ros1::Graph graph;
   graph.topics["/r7/scan"] = {"T", {"/r7/player"}, {"/r7/slam"}};
   session.addEdges(graph, "/r7/self_awareness");

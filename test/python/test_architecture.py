@@ -102,7 +102,8 @@ def test_a_channel_is_named_in_its_own_file() -> None:
     allowed = {ROOT / 'src/ros/model/model_upgrade.cpp', ROOT / 'src/core/evidence/tuning.cpp',
                ROOT / 'src/ros/bag/bag_records.cpp', ROOT / 'src/ros/bag/bag_writer.cpp',
                *_channels()}
-    for path in _sources('include', 'src/core', 'src/ros', 'src/monitor'):
+    for path in _sources('include', 'src/core', 'src/ros', 'src/node', 'src/monitor',
+                         'src/recorder'):
         if path not in allowed:
             text = path.read_text(encoding='utf-8')
             assert not [name for name in names if name in text], path
@@ -121,7 +122,40 @@ def test_public_headers_include_no_others() -> None:
                 ROOT / 'src' / name).exists(), (path, name)
 
 
-def test_ros_knows_neither_the_monitor_nor_python() -> None:
-    for path in _sources('include/self_awareness/ros', 'src/ros'):
+# By room beside the core, what it may include of the others.
+ROOMS: Dict[str, Set[str]] = {
+    'ros': {'core'},
+    'node': {'core', 'ros'},
+    'monitor': {'core', 'ros', 'node'},
+    'recorder': {'core', 'ros', 'node'},
+    'python': {'core', 'ros'},
+}
+
+
+@pytest.mark.parametrize('room', sorted(ROOMS))
+def test_rooms_beside_the_core_include_what_lies_below(room: str) -> None:
+    sources = _sources(f'include/self_awareness/{room}', f'src/{room}')
+    assert sources
+    for path in sources:
         for name in _included(path):
-            assert not re.match(r'(monitor|python)/', name), (path, name)
+            of = re.match(r'(?:self_awareness/)?(core|ros|node|monitor|recorder|python)/', name)
+            # Of roscpp, headers begin with ros/ as well.
+            if of and ((ROOT / 'src' / name).exists() or (ROOT / 'include' / name).exists()):
+                assert of.group(1) in ROOMS[room] | {room}, (path, name)
+
+
+def test_no_part_of_the_monitor_knows_another_one() -> None:
+    """What a part overrides, others call by `Part`; parameters and reports are of all."""
+    folder = ROOT / 'src/monitor'
+    parts = {path.name for path in folder.glob('*.h')
+             if ': public Part {' in path.read_text(encoding='utf-8')}
+    assert len(parts) >= 12
+    for path in _sources('src/monitor'):
+        known = set(_included(path)) & parts - {path.with_suffix('.h').name}
+        if path.stem not in ('monitor', 'parameters', 'diagnostics'):
+            assert not known, path
+
+
+def test_the_monitor_is_its_wiring() -> None:
+    code = (ROOT / 'src/monitor/monitor.cpp').read_text(encoding='utf-8')
+    assert len(code.splitlines()) <= 250

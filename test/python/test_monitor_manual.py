@@ -105,8 +105,7 @@ def test_ranges_are_those_of_the_code(name: str) -> None:
 
 
 def _advertised(call: str) -> List[str]:
-    code = ''.join((ROOT / 'src/monitor' / name).read_text()
-                   for name in ('monitor.cpp', 'mute_calls.cpp', 'accept_calls.cpp'))
+    code = ''.join(path.read_text() for path in sorted((ROOT / 'src/monitor').glob('*.cpp')))
     return re.findall(rf'private_node_handle_?\s*\.{call}\(\s*"(\w+)"', code)
 
 

@@ -49,8 +49,9 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
   }
   message_.message = wording(verdict, message_.evidence, message_.suspects,
                              toMessages(verdict.new_suspects, vocabulary), shared_);
-  if (verdict.alarm && !circumstances.recording.empty()) {
-    message_.message += "; events in " + circumstances.recording;
+  if (verdict.alarm) {
+    recording_ = circumstances.recording;
+    message_.message += recording_.empty() ? "" : "; events in " + recording_;
   }
   message_.header.stamp = toRosTime(end);
   message_.window_start = toRosTime(verdict.window->start);
@@ -63,7 +64,8 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
   message_.unknown_events = static_cast<std::uint32_t>(verdict.window->unknown());
 }
 
-void AlarmState::resume(const self_awareness::SelfAwareness& alarm, std::int64_t since) {
+void AlarmState::resume(const self_awareness::SelfAwareness& alarm, std::int64_t since,
+                        const std::string& recording) {
   core::Alarm standing;
   standing.id = alarm.alarm;
   standing.level = core::Alarm::Level::kAlarm;
@@ -75,6 +77,7 @@ void AlarmState::resume(const self_awareness::SelfAwareness& alarm, std::int64_t
   alarms_.resume(std::move(standing));
   message_ = alarm;
   level_since_ = since;
+  recording_ = recording;
 }
 
 bool AlarmState::standDown(const std::string& message, std::int64_t now) {

@@ -33,7 +33,9 @@ class AlarmState {
   /// Goes on with an alarm of before the start, whose kind is one.
   /// @param alarm as it was published
   /// @param since end of the window that raised it [ns]
-  void resume(const self_awareness::SelfAwareness& alarm, std::int64_t since);
+  /// @param recording path of the file that holds its events; empty: there is none
+  void resume(const self_awareness::SelfAwareness& alarm, std::int64_t since,
+              const std::string& recording);
   /// Takes back what stands, for another reason than a window: there is nothing abnormal any more.
   /// @param message the reason
   /// @param now ROS time [ns]
@@ -58,6 +60,9 @@ class AlarmState {
   std::int64_t since() const { return level_since_; }
   /// How long an alarm or a suspicion has stood [s], at the ROS time `now` [ns].
   double standsFor(std::int64_t now) const;
+  /// Path of the file that holds the events of the alarm that was raised last; empty: there is
+  /// none.
+  const std::string& recording() const { return recording_; }
   /// All of it, as it is published.
   const self_awareness::SelfAwareness& message() const { return message_; }
 
@@ -68,6 +73,7 @@ class AlarmState {
   core::Alarms alarms_;
   std::optional<core::Alarm> ended_;
   self_awareness::SelfAwareness message_;
+  std::string recording_;
   std::string shared_;            // of the last window that had evidence
   std::int64_t level_since_ = 0;  // end of the window with which the level changed last [ns]
 };

@@ -16,8 +16,9 @@ void Announcer::add(const core::Verdict& verdict, const core::Vocabulary& vocabu
   }
 }
 
-void Announcer::resume(const self_awareness::SelfAwareness& alarm, std::int64_t since) {
-  alarm_.resume(alarm, since);
+void Announcer::resume(const self_awareness::SelfAwareness& alarm, std::int64_t since,
+                       const std::string& recording) {
+  alarm_.resume(alarm, since, recording);
   handlers_.on_alarm(alarm_.message());
 }
 

@@ -6,7 +6,7 @@
 #include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/output_file.h"
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 namespace {
 
 std::size_t bytesOf(const self_awareness::EventType& type) {
@@ -25,8 +25,8 @@ std::size_t bytesOf(const self_awareness::EventLog& part) {
 }
 
 void writeLog(const RecordedLog& recording, const std::string& path) {
-  ros1::OutputFile file(path);
-  ros1::EventLogWriter log(file.temporary(), path);
+  OutputFile file(path);
+  EventLogWriter log(file.temporary(), path);
   log.start(recording.start);
   if (recording.graph) {
     log.writeGraph(*recording.graph, static_cast<std::int64_t>(recording.start.begin.toNSec()));
@@ -43,4 +43,4 @@ void writeLog(const RecordedLog& recording, const std::string& path) {
   file.complete();
 }
 
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

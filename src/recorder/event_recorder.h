@@ -13,8 +13,8 @@
 #include <optional>
 #include <string>
 
-#include "live_source.h"
-#include "run_node.h"
+#include "node/live_source.h"
+#include "node/run_node.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/bag/event_log_writer.h"

@@ -1,4 +1,4 @@
-#include "monitor/processor_watch.h"
+#include "node/processor_watch.h"
 
 #include <gtest/gtest.h>
 

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "clock_status.h"
-#include "encoding_parameters.h"
-#include "not_heard.h"
-#include "parameter_reader.h"
+#include "node/clock_status.h"
+#include "node/encoding_parameters.h"
+#include "node/parameter_reader.h"
+#include "node/unheard_status.h"
 #include "ros/now.h"
 #include "ros/text.h"
 #include "ros/verdict/diagnostic_status.h"

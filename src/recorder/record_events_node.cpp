@@ -1,8 +1,8 @@
 #include <ros/node_handle.h>
 
-#include "command_line.h"
 #include "event_recorder.h"
-#include "run_node.h"
+#include "node/command_line.h"
+#include "node/run_node.h"
 
 namespace {
 

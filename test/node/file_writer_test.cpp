@@ -1,4 +1,4 @@
-#include "monitor/file_writer.h"
+#include "node/file_writer.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-#include "await.h"
+#include "../await.h"
 
 namespace self_awareness {
 namespace {

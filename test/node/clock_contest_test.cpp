@@ -1,4 +1,4 @@
-#include "monitor/clock_contest.h"
+#include "node/clock_contest.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Needs a master: this process publishes, and discovers itself.
 
-#include "monitor/discovery.h"
+#include "node/discovery.h"
 
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>

@@ -1,0 +1,125 @@
+#include "reports.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <utility>
+
+#include "node/clock_status.h"
+#include "node/live_source.h"
+#include "nothing_heard.h"
+#include "parameters.h"
+#include "ros/now.h"
+#include "ros/text.h"
+#include "ros/verdict/components.h"
+#include "self_awareness/Components.h"
+#include "self_awareness/ros/ros_time.h"
+#include "session.h"
+
+namespace self_awareness {
+
+Reports::Reports(Host& host, ros::NodeHandle& node_handle, ros::NodeHandle& private_node_handle,
+                 const std::string& name)
+    : host_(host),
+      diagnostics_(node_handle, name, host.parameters().hardware_id,
+                   host.parameters().source_diagnostics, host.parameters().diagnostic_bytes),
+      components_publisher_(
+          private_node_handle.advertise<self_awareness::Components>("components", 1, true)),
+      heard_(momentNow()) {}
+
+ros1::HeardTally::Moment Reports::momentNow() {
+  timespec cpu{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  return {rosNow(), steadyNow(), cpu.tv_sec * core::kNanosecondsPerSecond + cpu.tv_nsec};
+}
+
+void Reports::onStart(const Session& session, const std::string& /*path*/) {
+  model_error_.clear();
+  mode_.clear();
+  heard_.setTypes(session.types());
+  started_at_ = steadyNow();
+}
+
+void Reports::onCut(Cut why) {
+  if (why == Cut::kClockSet) {
+    heard_.onClockStep();
+  }
+}
+
+void Reports::onEvent(const core::Event& event, const core::Vocabulary& vocabulary) {
+  if (!vocabulary.tellsMode(event.id)) {  // else its message is another event
+    heard_.add(event);
+  }
+}
+
+void Reports::onVerdict(core::Verdict& verdict, ros1::Circumstances& /*circumstances*/) {
+  mode_ = verdict.mode;
+}
+
+void Reports::onPause(std::int64_t pause) {
+  longest_pause_ = std::max(longest_pause_, pause);
+}
+
+void Reports::publish(const std::vector<Part*>& parts) {
+  now_ = momentNow();
+  now_.ros = host_.live().now();
+  MonitorState state;
+  for (Part* part : parts) {
+    part->onReport(state);
+  }
+  if (host_.session() != nullptr && now_.steady - components_at_ >= core::kNanosecondsPerSecond) {
+    components_at_ = now_.steady;
+    self_awareness::Components components = ros1::toComponents(
+        state.communication, host_.live().graph().get(), *host_.session()->encoder());
+    components.header.stamp = ros1::toRosTime(now_.ros);
+    components.mutes = state.mutes;
+    components_publisher_.publish(components);
+  }
+  diagnostics_.publish(std::move(state));
+}
+
+void Reports::onReport(MonitorState& state) {
+  const LiveSource& live = host_.live();
+  const Discovery::State discovered = live.discovery().state();
+  state.communication.model = host_.parameters().model;
+  state.communication.model_error = model_error_;
+  state.communication.take(host_.alarm(), heard_.report(now_, live.events().dropped()), now_.ros);
+  if (Session* session = host_.session()) {
+    reportModel(*session, state.communication);
+    state.communication.shares = session->takeShares();
+    state.full_of_unknown = session->full();
+    state.mode = session->mode(now_.ros);
+  }
+  state.subscriptions = discovered.subscriptions;
+  state.connections = live.events().connections();
+  state.left_out_topics = discovered.left_out;
+  state.ros_now = now_.ros;
+  state.clock_stands_still_for = live.clock().standsStillFor();
+  state.clock_rivals = live.clockRivals();
+  state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
+  state.master_answers = discovered.master_answers;
+}
+
+void Reports::reportModel(const Session& session, ros1::CommunicationState& state) {
+  state.calibrated = session.calibrated();
+  state.coverage = session.coverage();
+  state.unheard = session.unheard();
+  state.expected = session.expected();
+  state.optional = session.optional();
+  state.strangers = session.strangers();
+  state.disarmed = session.disarmed();
+  state.mode = mode_;
+  state.nothing_heard = nothingHeard(state.heard, now_.steady - started_at_);
+}
+
+std::string Reports::nothingHeard(const ros1::HeardReport& heard, std::int64_t waited) const {
+  const LiveSource& live = host_.live();
+  if (heard.known_types + heard.unknown_types > 0 || waited < kNothingHeard ||
+      clockStands(live.clock().standsStillFor())) {
+    return "";
+  }
+  return "nothing has been heard for " + ros1::number(std::floor(core::toSeconds(waited))) +
+         " s: " + whyNothingIsHeard(live.graph().get(), *host_.session()->encoder());
+}
+
+}  // namespace self_awareness

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "diagnostics.h"
+#include "host.h"
+#include "part.h"
+#include "ros/verdict/heard_tally.h"
+
+namespace self_awareness {
+
+/// Says on /diagnostics and ~components how things are: what was heard, what this and the other
+/// parts know.
+class Reports : public Part {
+ public:
+  Reports(Host& host, ros::NodeHandle& node_handle, ros::NodeHandle& private_node_handle,
+          const std::string& name);
+
+  void onStart(const Session& session, const std::string& path) override;
+  void onCut(Cut why) override;
+  void onEvent(const core::Event& event, const core::Vocabulary& vocabulary) override;
+  void onVerdict(core::Verdict& verdict, ros1::Circumstances& circumstances) override;
+  void onReport(MonitorState& state) override;
+
+  /// This program stood still. @param pause [ns of steady time]
+  void onPause(std::int64_t pause);
+  /// There is no model. @param error why, in words
+  void onNoModel(const std::string& error) { model_error_ = error; }
+  /// Publishes what all parts tell, in their order.
+  void publish(const std::vector<Part*>& parts);
+
+ private:
+  /// What the clocks say now.
+  static ros1::HeardTally::Moment momentNow();
+  void reportModel(const Session& session, ros1::CommunicationState& state);
+  /// Why nothing has been heard for so long, in words; empty: something was.
+  /// @param waited since the model began to judge [ns of steady time]
+  std::string nothingHeard(const ros1::HeardReport& heard, std::int64_t waited) const;
+
+  Host& host_;
+  Diagnostics diagnostics_;
+  ros::Publisher components_publisher_;
+  ros1::HeardTally heard_;
+  std::string model_error_;         // why there is no model; empty: there is one
+  std::vector<std::string> mode_;   // components that are off together, as is accepted
+  ros1::HeardTally::Moment now_;    // of the report
+  std::int64_t started_at_ = 0;     // when the model began to judge [ns of steady time]
+  std::int64_t components_at_ = 0;  // ~components was published last [ns of steady time]
+  std::int64_t longest_pause_ = 0;  // of this program, since the last report [ns of steady time]
+};
+
+}  // namespace self_awareness
