@@ -21,13 +21,6 @@ LABELS = {'overdue': 'overdue', 'fewer': 'rate', 'more': 'rate', 'own gaps': 'pa
           'pairs': 'pairs', 'deadlines': 'deadlines', 'company': 'company'}
 """What people call the channels."""
 
-FEWEST_GAPS = 8
-LEAST_GAIN = 0.3
-FEWEST_DELAYS_OF_PAIR = 200
-PREDECESSORS = 2
-LEAST_RATE = 1.5
-DEADLINES = 3
-MOST_MISSES = 0.5
 RARE_MISSES = 0.02
 
 MOST_SURPRISE = 6.0
@@ -128,8 +121,6 @@ class Seen(NamedTuple):
     longest_silence: int
     longest_stall: int
     events: Dict[str, int]
-    longest_gaps: Dict[str, int]
-    firsts: Dict[str, int]
 
 
 def stalls_of(pieces: Sequence[Sequence[Event]]) -> List[Dict[int, int]]:
@@ -219,13 +210,10 @@ class Counts:
                          ticking: Sequence[Event], stalls: Dict[int, int]) -> None:
         stamps = [t for t, _ in events]
         of_kind = {kind: [t for t, other in ticking if other == kind] for kind in self.types}
-        firsts = {kind: [t for t, other in events if other == kind][:1] for kind in self.types}
         self.recordings.append(Seen(
             stamps[0], max(stamps), longest_gap([t for t, _ in ran]),
             max(stalls.values(), default=0),
-            {kind: len(own) for kind, own in of_kind.items()},
-            {kind: longest_gap(own) if len(own) > 1 else 0 for kind, own in of_kind.items()},
-            {kind: max(own[0] - stamps[0], 0) if own else -1 for kind, own in firsts.items()}))
+            {kind: len(own) for kind, own in of_kind.items()}))
 
     def miss_rate(self, asking: str, answer: str) -> float:
         """Return the share of the gaps of `asking` without the other."""
@@ -262,17 +250,6 @@ def longest_gap(stamps: Sequence[int]) -> int:
     return max((b - a for a, b in zip(stamps, stamps[1:]) if b > a), default=0)
 
 
-def gain(learned: Counts, measured: Counts, e_i: str, e_j: str) -> float:
-    """Return the mean of log P_ij - log Q_i over the delays of other recordings [nat]."""
-    delays = measured.delays[e_i, e_j]
-    if not learned.delays[e_i, e_j] or len(delays) < FEWEST_GAPS:
-        return 0.0
-    p_ij = log_probabilities(learned.delays[e_i, e_j])
-    q_i = log_probabilities([b for k in learned.types if not is_mode(k)
-                             for b in learned.delays[e_i, k]])
-    return math.fsum(p_ij[b] - q_i[b] for b in delays) / len(delays)
-
-
 class ReferenceModel:
     """What normal operation lets expect.
 
@@ -280,22 +257,20 @@ class ReferenceModel:
         tracks: what is watched.
         first, second: counts of the two halves of the training.
         both: counts of all of it.
-        learned: those that probabilities are taken from.
         least_effect: on delays, [ns] and the share of the period.
     """
 
     def __init__(self, tracks: Sequence[Track], first: Counts, second: Counts, both: Counts,
-                 learned: Counts, least_effect: Tuple[float, float] = LEAST_EFFECT) -> None:
+                 least_effect: Tuple[float, float] = LEAST_EFFECT) -> None:
         self.tracks = tracks
         self.both = both
-        self.learned = learned
         self.types = both.types
         self._halves = (first, second)
         self._least_effect = least_effect
         self.longest = {kind: max(both.gaps[kind], default=0) for kind in self.types}
         self.longest_silence = max(seen.longest_silence for seen in both.recordings)
         self.longest_stall = max(seen.longest_stall for seen in both.recordings)
-        self._gaps = {kind: self._binned(learned.gaps[kind]) for kind in self.types}
+        self._gaps = {kind: self._binned(both.gaps[kind]) for kind in self.types}
         self._surprises = {track: self._standardised(track[2], track[1])
                            for track in tracks if LABELS[track[0]] == 'pairs'}
 
@@ -310,8 +285,8 @@ class ReferenceModel:
         variance = (math.fsum((s - mean) ** 2 for s in held_out) / len(held_out)
                     if held_out else 0.0)
         surprises = [min((-log - mean) / max(math.sqrt(variance), LEAST_DEVIATION), MOST_SURPRISE)
-                     for log in log_probabilities(self.learned.delays[e_i, e_j])]
-        period = self.learned.mean_gap(e_i)
+                     for log in log_probabilities(self.both.delays[e_i, e_j])]
+        period = self.both.mean_gap(e_i)
         shortest, longest = self._harmless(e_i, e_j)
         shifts = (0.0, period, -period) if e_i != e_j else (0.0,)
         harmless = {index for index in range(BINS) for shift in shifts
@@ -325,10 +300,10 @@ class ReferenceModel:
 
     def _harmless(self, e_i: str, e_j: str) -> Tuple[float, float]:
         """Return the shortest and the longest delay that differ by little from the usual ones."""
-        bins = self.learned.delays[e_i, e_j]
+        bins = self.both.delays[e_i, e_j]
         in_ns, of_period = (effect * (times if e_i == e_j else 1.0)
                             for effect, times in zip(self._least_effect, GAPS_TO_DELAYS))
-        effect = max(in_ns, of_period * self.learned.mean_gap(e_i))
+        effect = max(in_ns, of_period * self.both.mean_gap(e_i))
         first, last = usual_bins(bins)
         return lower_edge(first) - effect, lower_edge(last + 1) + effect
 
@@ -342,7 +317,7 @@ class ReferenceModel:
         gaps = self._gaps[kind]
         if not gaps:
             return 0.0
-        longest = max(self.learned.gaps[kind])
+        longest = max(self.both.gaps[kind])
         left = math.fsum(gap - age for gap in gaps if gap > age)
         if left == 0.0:  # the same, but the exponential would underflow
             return math.log(math.fsum(gaps) + longest) - math.log(longest) + age / longest
@@ -351,7 +326,7 @@ class ReferenceModel:
 
     def rate(self, kind: str, count: float) -> float:
         """Return how many spreads more than usual came in 2 s."""
-        counts = self.learned.rates[kind]
+        counts = self.both.rates[kind]
         mean = sum(counts) / max(len(counts), 1)
         variance = sum((n - mean) ** 2 for n in counts) / max(len(counts), 1)
         drift = LEAST_RATE_EFFECT * mean
@@ -361,7 +336,7 @@ class ReferenceModel:
         """Return how unusual a delay is [standard deviations]."""
         _, e_j, e_i = track
         surprise = self._surprises[track][log_bin(delay)]
-        period = self.learned.mean_gap(e_i)
+        period = self.both.mean_gap(e_i)
         shortest, longest = self._harmless(e_i, e_j)
         shifts = (0.0, period, -period) if e_i != e_j else (0.0,)
         harmless = any(shortest <= delay + shift <= longest for shift in shifts)
@@ -384,6 +359,6 @@ class ReferenceModel:
         if label == 'deadlines':
             return 3.0 if self.counts_requests(track) else 0.5
         if label == 'company':
-            gap = 1.0 if is_mode(track[2]) else self.learned.usual_delay(track[2], track[2], 0.5)
+            gap = 1.0 if is_mode(track[2]) else self.both.usual_delay(track[2], track[2], 0.5)
             return max(3.0, 0.5 / gap) if gap > 0 else 3.0
         return 2 * MOST_SURPRISE + 1 if label == 'pairs' else 3.0

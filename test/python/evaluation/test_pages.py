@@ -90,7 +90,7 @@ def test_pages_of_an_older_method_are_listed(tmp_path: Path, capsys) -> None:
 def test_every_page_of_the_evaluation_says_what_wrote_it() -> None:
     found = {each.page for each in pages.find(DOCS)}
     assert found >= {f'evaluation/{name}.md' for name in (
-        'simulated', 'families', 'live', 'nodes', 'recordings', 'ablation', 'before_after')}
+        'simulated', 'families', 'live', 'nodes', 'recordings', 'ablation')}
     assert {number.page for number in readme_numbers.NUMBERS} <= found
 
 
