@@ -134,7 +134,7 @@ Accept::Response AcceptCalls::serve(const Accept::Request& request, const std::s
                       (refused == 0 ? "" : "; refused: " + listed(wanted.refused)) + "; kept in " +
                       path_ + (undo ? "" : unknownOf(done, acceptable->vocabulary));
   ROS_INFO("%s, by %s", response.message.c_str(), caller.c_str());
-  handlers_.on_change(caller, undo);
+  handlers_.on_change(caller);
   return response;
 }
 

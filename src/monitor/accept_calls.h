@@ -33,7 +33,7 @@ class AcceptCalls {
     std::function<std::optional<Acceptable>()> acceptable;
     /// Called when something more is accepted, or something was taken back.
     /// @param caller name of the node
-    std::function<void(const std::string& caller, bool undo)> on_change;
+    std::function<void(const std::string& caller)> on_change;
   };
 
   /// @param calls admits them

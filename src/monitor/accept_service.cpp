@@ -11,15 +11,12 @@
 namespace self_awareness {
 
 AcceptService::AcceptService(OperatorCalls& calls, Host& host,
-                             std::function<const self_awareness::Incidents&()> incidents,
-                             std::function<void()> on_undo)
+                             std::function<const self_awareness::Incidents&()> incidents)
     : calls_(calls),
       host_(host),
       incidents_(std::move(incidents)),
-      on_undo_(std::move(on_undo)),
-      accepts_(calls_,
-               {[this] { return acceptable(); },
-                [this](const std::string& caller, bool undo) { onAccepted(caller, undo); }}) {}
+      accepts_(calls_, {[this] { return acceptable(); },
+                        [this](const std::string& caller) { onAccepted(caller); }}) {}
 
 std::vector<ros::ServiceServer> AcceptService::advertise(ros::NodeHandle& private_node_handle) {
   return {accepts_.advertise(private_node_handle)};
@@ -46,12 +43,9 @@ std::optional<Acceptable> AcceptService::acceptable() {
                     session->detector().unknown(), *session->encoder(), host_.live().now()};
 }
 
-void AcceptService::onAccepted(const std::string& caller, bool undo) {
+void AcceptService::onAccepted(const std::string& caller) {
   Session& session = *host_.session();
   session.accept(accepts_.accepted());
-  if (undo) {
-    on_undo_();
-  }
   const std::optional<core::Alarm>& stands = host_.alarm().standing();
   if (stands && accepts_.covers(*stands, session.vocabulary())) {
     calls_.record("accept", caller, wallNow());

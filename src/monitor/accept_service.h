@@ -18,10 +18,8 @@ class AcceptService : public Part {
  public:
   /// @param calls admits calls
   /// @param incidents that a call may refer to
-  /// @param on_undo called when something is judged again that was not
   AcceptService(OperatorCalls& calls, Host& host,
-                std::function<const self_awareness::Incidents&()> incidents,
-                std::function<void()> on_undo);
+                std::function<const self_awareness::Incidents&()> incidents);
 
   std::vector<ros::ServiceServer> advertise(ros::NodeHandle& private_node_handle) override;
   void onStart(const Session& session, const std::string& path) override;
@@ -32,12 +30,11 @@ class AcceptService : public Part {
   /// What ~accept may refer to; none: there is no model, or it is the paper's detector that
   /// judges.
   std::optional<Acceptable> acceptable();
-  void onAccepted(const std::string& caller, bool undo);
+  void onAccepted(const std::string& caller);
 
   OperatorCalls& calls_;
   Host& host_;
   const std::function<const self_awareness::Incidents&()> incidents_;
-  const std::function<void()> on_undo_;
   AcceptCalls accepts_;
 };
 

@@ -15,20 +15,9 @@ using ros1::number;
 
 namespace {
 
-std::vector<std::string> inWords(const std::vector<DriftKeeper::Told>& drift) {
-  std::vector<std::string> words;
-  words.reserve(drift.size());
-  for (const DriftKeeper::Told& each : drift) {
-    words.push_back(each.words);
-  }
-  return words;
-}
-
 /// All lists as they are told where nothing is left out.
 std::string allLists(const MonitorState& state) {
-  std::string lists = ros1::listed(state.mutes) + '\n' +
-                      ros1::listed(self_awareness::inWords(state.unheard)) + '\n' +
-                      ros1::listed(inWords(state.drift));
+  std::string lists = ros1::listed(state.mutes) + '\n' + ros1::listed(inWords(state.unheard));
   for (const auto& [key, list] : ros1::listsOf(state.communication)) {
     lists += '\n' + ros1::listed(list);
   }
@@ -106,12 +95,6 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "what is accepted is not kept: " + state.accept_error);
   }
-  if (!state.drift.empty()) {
-    const std::size_t others = state.drift.size() - 1;
-    status.mergeSummary(DiagnosticStatus::WARN,
-                        "drift: " + state.drift.front().words +
-                            (others > 0 ? ", and of " + std::to_string(others) + " more" : ""));
-  }
   tellUnheard(state.unheard, state.communication.lists, status);
   status.add("events a second", number(heard.rate));
   status.add("dropped messages", heard.dropped);
@@ -126,12 +109,6 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
     status.add("alarm taken back", state.taken_back);
   }
   ros1::tellNumbered("mute", state.mutes, state.communication.lists, status);
-  if (state.drift.size() > 1) {
-    ros1::tellNumbered("drift", inWords(state.drift), state.communication.lists, status);
-  }
-  if (!state.drift_error.empty()) {
-    status.add("drift is not kept", state.drift_error);
-  }
   status.add("times the clock was set", heard.clock_steps);
   if (state.recorder) {
     tellRecorder(*state.recorder, status);

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "drift_keeper.h"
 #include "flight_recorder.h"
 #include "kept_logs.h"
 #include "ros/verdict/diagnostic_status.h"
@@ -35,8 +34,6 @@ struct MonitorState {
   std::vector<std::string> mutes;           ///< in words
   std::string accept_error;                 ///< why what is accepted is not in its file
   std::string keeper_error;                 ///< why alarm or incidents are not in their files
-  std::vector<DriftKeeper::Told> drift;     ///< who drifts, most evidence first
-  std::string drift_error;                  ///< why it is not in its file
   double longest_pause = 0;  ///< for which this program stood still, since the last report [s]
   std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder
   std::optional<KeptLogs::Report> kept_logs;       ///< none: nothing is kept to learn from

@@ -99,12 +99,12 @@ void KeptLogs::onTick(const Moment& now) {
   }
   last_ = std::max(last_, now.heard_until);
   packer_->advance(last_);
-  if (last_ - first_ >= kLongestStretch || bytes_ >= kMostBytes) {
+  if (last_ - first_ >= kLongest || bytes_ >= kMostBytes) {
     endStretch();
   }
 }
 
-void KeptLogs::onNotNormal(const std::string& why) {
+void KeptLogs::leaveOut(const std::string& why) {
   if (packer_ && why_.empty()) {
     why_ = why;
     parts_.clear();
@@ -119,7 +119,7 @@ void KeptLogs::endStretch() {
   if (!why_.empty()) {
     ++report_.left_out;
     report_.why = why_;
-  } else if (last_ - first_ >= kShortestStretch) {
+  } else if (last_ - first_ >= kShortest) {
     write();
   }
   packer_.reset();

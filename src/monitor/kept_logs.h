@@ -16,7 +16,6 @@
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
-#include "stretch.h"
 
 namespace self_awareness {
 
@@ -34,6 +33,9 @@ struct KeptLogsParameters {
 /// are ROS time [ns].
 class KeptLogs : public Part {
  public:
+  /// Length of a stretch [ns]; the last one before the end may be shorter.
+  static constexpr std::int64_t kLongest = 1800 * core::kNanosecondsPerSecond;
+  static constexpr std::int64_t kShortest = 10 * core::kNanosecondsPerSecond;
   /// Of the events in memory; a stretch that has more ends early.
   static constexpr std::size_t kMostBytes = 32000000;
 
@@ -60,11 +62,14 @@ class KeptLogs : public Part {
   void onEvent(const core::Event& event, const core::Vocabulary& vocabulary) override;
   void onWaiting(const core::Waiting& waiting) override;
   void onTick(const Moment& now) override;
-  /// The stretch will not be kept.
-  void onNotNormal(const std::string& why) override;
+  /// The stretch is not normal operation, and will not be kept.
+  /// @param why in words
+  void leaveOut(const std::string& why);
   /// Ends the stretch.
   void onCut(Cut /*why*/) override { endStretch(); }
-  void onRobotStart(std::int64_t at) override;
+  /// The master was restarted: the robot is taken for started again.
+  /// @param at wall time [ns]
+  void onRobotStart(std::int64_t at);
   void onReport(MonitorState& state) override;
   /// Ends the stretch and waits for the disk.
   void finish() override;

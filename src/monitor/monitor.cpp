@@ -33,7 +33,6 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
       recorder_(parameters_.recorder, [this] { return source(); }),
       kept_logs_(
           parameters_.kept_logs, [this] { return source(); }, wallNow()),
-      drift_(parameters_.run_id, wallNow()),
       not_heard_(*this),
       restarts_(*this),
       keeper_(folderOf(parameters_.recorder), parameters_.run_id),
@@ -41,13 +40,11 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                  [this](const self_awareness::Incidents& incidents) {
                    incidents_publisher_.publish(incidents);
                  }),
-      accepts_(
-          calls_, *this,
-          [this]() -> const self_awareness::Incidents& { return incidents_.incidents(); },
-          [this] { drift_.forget(); }),
+      accepts_(calls_, *this,
+               [this]() -> const self_awareness::Incidents& { return incidents_.incidents(); }),
       mutes_(calls_, *this),
-      parts_({&reports_, &operators_, &recorder_, &kept_logs_, &drift_, &not_heard_, &quotes_,
-              &restarts_, &keeper_, &incidents_, &accepts_, &mutes_}) {
+      parts_({&reports_, &operators_, &recorder_, &kept_logs_, &not_heard_, &quotes_, &restarts_,
+              &keeper_, &incidents_, &accepts_, &mutes_}) {
   node_handle.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
   status_publisher_ = private_node_handle_.advertise<self_awareness::SelfAwareness>("status", 100);
@@ -186,7 +183,7 @@ void Monitor::onSenders(const core::Senders& senders) {
 }
 
 void Monitor::onMasterRestart(std::int64_t /*now*/) {
-  all(&Part::onRobotStart, wallNow());
+  kept_logs_.onRobotStart(wallNow());
 }
 
 void Monitor::onTick(std::int64_t now) {
@@ -224,7 +221,7 @@ void Monitor::standDown(const std::string& message) {
 }
 
 void Monitor::notNormal(const std::string& why) {
-  all(&Part::onNotNormal, why);
+  kept_logs_.leaveOut(why);
 }
 
 }  // namespace self_awareness

@@ -12,7 +12,6 @@
 
 #include "accept_service.h"
 #include "alarm_keeper.h"
-#include "drift_keeper.h"
 #include "flight_recorder.h"
 #include "host.h"
 #include "incident_keeper.h"
@@ -105,8 +104,7 @@ namespace self_awareness {
 ///
 /// **Files**: those of the flight recorder; the alarm that stands (AlarmKeeper) and the last
 /// incidents (IncidentKeeper): a monitor that is started again goes on with them. MODEL.accepted,
-/// beside the model: what is accepted. MODEL.drift: how near components came to their limits
-/// (DriftKeeper). MODEL.kept: logs of normal operation (KeptLogs).
+/// beside the model: what is accepted. MODEL.kept: logs of normal operation (KeptLogs).
 ///
 /// **Services**
 ///
@@ -205,7 +203,6 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   OperatorServices operators_;
   FlightRecorder recorder_;
   KeptLogs kept_logs_;
-  DriftKeeper drift_;
   NotHeard not_heard_;
   LogQuotes quotes_;
   RestartWatch restarts_;

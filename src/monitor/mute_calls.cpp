@@ -121,9 +121,6 @@ void MuteCalls::onReport(MonitorState& state) {
   for (auto& [component, restarts] : state.communication.restarts) {
     restarts.second = restarts.second && ofComponent(component).empty();
   }
-  const auto is_muted = [&](const auto& each) { return !ofComponent(each.component).empty(); };
-  state.drift.erase(std::remove_if(state.drift.begin(), state.drift.end(), is_muted),
-                    state.drift.end());
 }
 
 bool MuteCalls::onStanding(const std::optional<core::Alarm>& standing) {

@@ -62,10 +62,6 @@ class Part {
   virtual void onVerdict(core::Verdict& /*verdict*/, ros1::Circumstances& /*circumstances*/) {}
   /// The level has changed, or an alarm names further components; it was published.
   virtual void onAlarm(const ros1::AlarmState& /*alarm*/) {}
-  /// What is heard now is not normal operation. @param why in words
-  virtual void onNotNormal(const std::string& /*why*/) {}
-  /// The master, and thus the robot, was started again. @param at wall time [ns]
-  virtual void onRobotStart(std::int64_t /*at*/) {}
   /// Tells the diagnostics what this part knows.
   virtual void onReport(MonitorState& /*state*/) {}
   /// The program ends: writes what must not be lost. Nothing else is called after it.

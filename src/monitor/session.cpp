@@ -101,9 +101,9 @@ void Session::accept(const core::Acceptances& accepted) {
 }
 
 void Session::onShares(const core::evidence::Shares& shares) {
-  window_shares_.assign(model_->components().size(), 0);
+  shares_.resize(model_->components().size(), 0);
   const auto raise = [&](core::EventId id, double share) {
-    double& largest = window_shares_[model_->componentIndex(id)];
+    double& largest = shares_[model_->componentIndex(id)];
     largest = std::max(largest, share);
   };
   for (std::size_t track = 0; track < shares.tracks.size(); ++track) {
@@ -114,13 +114,6 @@ void Session::onShares(const core::evidence::Shares& shares) {
   for (const auto& [id, share] : shares.never_heard) {
     raise(id, share);
   }
-  shares_.resize(window_shares_.size(), 0);
-  std::transform(shares_.begin(), shares_.end(), window_shares_.begin(), shares_.begin(),
-                 [](double one, double other) { return std::max(one, other); });
-}
-
-std::vector<std::string> Session::components() const {
-  return model_ && calibrated_ ? model_->components() : std::vector<std::string>();
 }
 
 std::uint64_t Session::content() const {

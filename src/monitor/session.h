@@ -60,11 +60,6 @@ class Session {
   /// Largest share of a limit that components have reached in the windows since the last call, by
   /// component; 1 is the limit. Empty: no window was judged, or not known of this detector.
   std::map<std::string, double> takeShares();
-  /// The same of the last window, in the order of components(). Empty: no window was judged.
-  const std::vector<double>& sharesOfWindow() const { return window_shares_; }
-  /// Components that shares are of; empty: there are no limits, or they are not known of this
-  /// detector.
-  std::vector<std::string> components() const;
   /// A number over event types and limits, or the threshold: another one for another model. Alarms
   /// and shares depend on them, besides what is accepted.
   std::uint64_t content() const;
@@ -134,7 +129,6 @@ class Session {
   std::shared_ptr<const core::evidence::Model> model_;  // of the judge; null: it is the paper's
   std::vector<core::evidence::Coverage> coverage_;
   std::map<std::string, std::map<std::string, double>> expected_;
-  std::vector<double> window_shares_;  // of the last one, by component; empty: there was none
   std::vector<double> shares_;  // since they were taken, by component; empty: no window since
   std::set<std::string> optional_;
   std::set<core::SourceGraph::Publication> unheard_;

@@ -103,7 +103,7 @@ class AcceptCallsTest : public testing::Test {
                      {[this]() -> std::optional<Acceptable> {
                         return Acceptable{alarm_, incidents_, vocabulary_, unknown_, encoder_, 7};
                       },
-                      [this](const std::string& /*caller*/, bool /*undo*/) { ++changes_; }}};
+                      [this](const std::string& /*caller*/) { ++changes_; }}};
 };
 
 TEST_F(AcceptCallsTest, WhatStandsIsTakenByItsIdWhileItStands) {

@@ -21,7 +21,7 @@ namespace filesystem = boost::filesystem;
 constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 constexpr std::int64_t kStart = 1600000000 * kSecond;
 constexpr std::int64_t kRobotStart = kStart - 60 * kSecond;
-constexpr std::int64_t kStretch = kLongestStretch / kSecond;  // [s]
+constexpr std::int64_t kStretch = KeptLogs::kLongest / kSecond;  // [s]
 
 class KeptLogsTest : public testing::Test {
  protected:
@@ -123,8 +123,8 @@ TEST_F(KeptLogsTest, EachStretchBeginsWithTheModeThatLasts) {
 
 TEST_F(KeptLogsTest, WhatIsNotNormalIsNotKeptAndTheNextStretchIs) {
   hear(0, 60);
-  logs().onNotNormal("an alarm");
-  logs().onNotNormal("a suspicion");
+  logs().leaveOut("an alarm");
+  logs().leaveOut("a suspicion");
   hear(60, kStretch + 1);
   EXPECT_EQ(logs().report().left_out, 1U);
   EXPECT_EQ(logs().report().why, "an alarm");
@@ -147,7 +147,7 @@ TEST_F(KeptLogsTest, TheLastStretchIsKeptUnlessItIsTooShort) {
 
 TEST_F(KeptLogsTest, WhatIsLeftOutAtTheEndIsNotKept) {
   hear(0, 60);
-  logs().onNotNormal("an alarm");
+  logs().leaveOut("an alarm");
   logs().finish();
   hear(60, 61);  // a last event may still come
   EXPECT_TRUE(files().empty());

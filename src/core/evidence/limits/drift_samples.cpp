@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <utility>
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -17,53 +15,28 @@ std::int64_t dayOf(std::int64_t time, std::int64_t start) {
 
 }  // namespace
 
-DriftSamples::DriftSamples(std::size_t components, std::size_t most)
-    : components_(components), most_(most), complete_(components) {}
-
-void DriftSamples::restore(const std::vector<std::vector<double>>& samples, const Place& last) {
-  for (const std::vector<double>& shares : samples) {
-    complete_.check(shares);
-    begin(shares);
-  }
-  last_ = last;
-}
-
-bool DriftSamples::add(const Stretch& stretch) {
+void DriftSamples::add(const Stretch& stretch) {
   complete_.check(stretch.shares);
   const bool same_start =
-      !list_.empty() && (stretch.robot_start != 0 ? stretch.robot_start == last_.robot_start
-                                                  : stretch.begin - last_.end <= kLongestPause);
-  const std::int64_t start = same_start ? last_.start : stretch.begin;
+      newest_ && (stretch.robot_start != 0 ? stretch.robot_start == newest_->robot_start
+                                           : stretch.begin - newest_->end <= kLongestPause);
+  const std::int64_t start = same_start ? newest_->start : stretch.begin;
   const std::int64_t day = dayOf(stretch.begin, start);
-  if (same_start && day == last_.day) {
-    last_.end = stretch.end;
-    bool grew = false;
-    for (std::size_t number = 0; number < components_; ++number) {
-      double& largest = list_.back()[number];
-      grew = grew || stretch.shares[number] > largest;
-      largest = std::max(largest, stretch.shares[number]);
-    }
-    return grew;
+  if (same_start && day == newest_->day) {
+    newest_->end = stretch.end;
+    std::transform(stretch.shares.begin(), stretch.shares.end(), newest_->shares.begin(),
+                   newest_->shares.begin(),
+                   [](double one, double other) { return std::max(one, other); });
+    return;
   }
-  if (isFull()) {
-    return false;
-  }
-  last_ = {start, day, stretch.robot_start, stretch.end};
-  begin(stretch.shares);
-  return true;
-}
-
-void DriftSamples::begin(std::vector<double> shares) {
-  if (!list_.empty()) {
-    complete_.add(list_.back());
-  }
-  list_.push_back(std::move(shares));
+  complete_ = drift();
+  newest_ = Newest{start, day, stretch.robot_start, stretch.end, stretch.shares};
 }
 
 Drift DriftSamples::drift() const {
   Drift drift = complete_;
-  if (!list_.empty()) {
-    drift.add(list_.back());
+  if (newest_) {
+    drift.add(newest_->shares);
   }
   return drift;
 }
