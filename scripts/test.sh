@@ -1,24 +1,46 @@
 #!/usr/bin/env bash
-# Installs what the tests need, builds and runs them all, and says how many passed.
+# Installs what the tests need, builds and runs them, and says how many passed, which were the
+# slowest, and how long each stage took.
+#
+# usage: scripts/test.sh [quick]     quick: core, ros and monitor without a master, and Python
+#                                    of what is called, not started
 
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 
 install_packages
-# The same options both times: CMake does not run again, in the workspace's own environment.
-build -DSELF_AWARENESS_WERROR=ON
-build -DSELF_AWARENESS_WERROR=ON tests
-
-use_loopback
-
-say "Testing"
 results=$workspace/build/test_results
 rm -rf "$results"
-# "|| true", because the results below tell.
+
+# run STAGE COMMAND... "|| true", because the results below tell.
+run() {
+  local begin=$SECONDS
+  say "Testing: $1"
+  "${@:2}" || true
+  say_time "Testing: $1" "$begin"
+}
+
+if [ "${1:-}" = quick ]; then
+  # The same options as in the whole: CMake does not run again, in the workspace's own environment.
+  build -DSELF_AWARENESS_WERROR=ON
+  build -DSELF_AWARENESS_WERROR=ON core_test ros_test monitor_test
+  use_loopback
+  mkdir -p "$results"
+  for test in core_test ros_test monitor_test; do
+    run $test "$workspace/devel/lib/self_awareness/$test" "--gtest_output=xml:$results/gtest-$test.xml"
+  done
+  run pytest /usr/bin/python3 -m pytest -q -p no:cacheprovider -n "$(nproc)" --dist loadfile \
+    --junit-xml "$results/pytest-python.xml" \
+    "$checkout"/test/python/{core,calibration,comparison,live_view,reporting,training}
+  exec /usr/bin/python3 "$checkout/test/count_results.py" "$results" gtest pytest
+fi
+build -DSELF_AWARENESS_WERROR=ON
+build -DSELF_AWARENESS_WERROR=ON tests
+use_loopback
 for tests in gtest pytest roslaunch-check; do
-  make -C "$workspace/build" "run_tests_self_awareness_$tests" -j1 || true
+  run $tests make -C "$workspace/build" "run_tests_self_awareness_$tests" -j1
 done
 # Live tests mostly wait.
-make -C "$workspace/build" run_tests_self_awareness_rostest -j3 || true
+run rostest make -C "$workspace/build" run_tests_self_awareness_rostest -j3
 
 catkin_test_results --verbose "$results" || true
 exec /usr/bin/python3 "$checkout/test/count_results.py" "$results" gtest pytest rostest

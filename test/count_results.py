@@ -1,6 +1,9 @@
 #!/usr/bin/python3
 """Adds up the JUnit files below a folder: prints `N passed, N failed, N skipped`, and what failed.
 
+Before that, the slowest tests, of those that took a second or more, and how many tests had a
+second try since the machine disturbed them.
+
 Exit code 0 only if something passed and nothing failed. A file that cannot be read is a failure:
 its tests did not end. So is a kind of files (what their names begin with) that is asked for, and
 of which there is none.
@@ -10,9 +13,13 @@ import pathlib
 import sys
 import xml.etree.ElementTree
 
+SLOWEST = 20
+SECOND_TRY = 'once more: the machine'
+"""Begin of the line that again_if_disturbed() of the rostests prints."""
+
 
 def main(folder: str, *kinds: str) -> int:
-    passed, failed, skipped = 0, [], []
+    passed, failed, skipped, times, second_tries = 0, [], [], [], 0
     for kind in kinds:
         if not list(pathlib.Path(folder).rglob(kind + '-*.xml')):
             failed.append('{}: no results'.format(kind))
@@ -22,6 +29,7 @@ def main(folder: str, *kinds: str) -> int:
         except xml.etree.ElementTree.ParseError as error:
             failed.append('{}: {}'.format(path, error))
             continue
+        second_tries += ''.join(root.itertext()).count(SECOND_TRY)
         for suite in root.iter('testsuite'):
             # One that could not be set up says so by its numbers alone.
             cases = suite.findall('testcase')
@@ -32,12 +40,18 @@ def main(folder: str, *kinds: str) -> int:
                 failed.append('{}: {} errors outside of tests'.format(path.stem, number - told))
         for case in root.iter('testcase'):
             name = '{} {}'.format(case.get('classname', path.stem), case.get('name'))
+            times.append((float(case.get('time') or 0), name))
             if case.find('failure') is not None or case.find('error') is not None:
                 failed.append(name)
             elif case.find('skipped') is not None or case.get('status') == 'notrun':
                 skipped.append(name)
             else:
                 passed += 1
+    for seconds, name in sorted(times, reverse=True)[:SLOWEST]:
+        if seconds >= 1:
+            print('{:6.1f} s  {}'.format(seconds, name))
+    if second_tries:
+        print('{} tests had a second try: the machine disturbed them'.format(second_tries))
     for title, names in (('skipped', skipped), ('FAILED', failed)):
         for name in names:
             print('{}: {}'.format(title, name))

@@ -18,6 +18,11 @@ FAILED = '<testsuite tests="1"><testcase classname="a" name="c"><failure/></test
      'FAILED: a c\n1 passed, 1 failed, 0 skipped\n'),
     ({'gtest-a': PASSED}, ['gtest', 'pytest'], 1,
      'FAILED: pytest: no results\n1 passed, 1 failed, 0 skipped\n'),
+    ({'rosunit-a': '<testsuite tests="3"><testcase classname="a" name="b" time="2.25"/>'
+      '<testcase classname="a" name="c" time="0.9"/><testcase classname="a" name="d" time="70"/>'
+      '<system-out>once more: the machine stood still for 2.0 s</system-out></testsuite>'}, [], 0,
+     '  70.0 s  a d\n   2.2 s  a b\n1 tests had a second try: the machine disturbed them\n'
+     '3 passed, 0 failed, 0 skipped\n'),
     ({}, [], 1, '0 passed, 0 failed, 0 skipped\n')])
 def test_what_passed_and_failed_is_counted(tmp_path: Path, files: dict, kinds: list, code: int,
                                            told: str) -> None:

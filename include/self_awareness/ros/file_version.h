@@ -26,7 +26,6 @@ inline constexpr FileKind kResultBag{"result bag", 2, 1, kMethod};
 inline constexpr FileKind kStandingAlarmFile{"standing alarm", 2, 1, 0};
 inline constexpr FileKind kIncidentsFile{"incidents", 2, 1, 0};
 inline constexpr FileKind kAcceptedFile{"accepted", 2, 2, 0};
-inline constexpr FileKind kDriftFile{"drift", 1, 1, kMethod};
 inline constexpr FileKind kGraphFile{"graph", 3, 2, 0};  ///< beside bags, in YAML
 
 /// Of this package, as in package.xml: "0.1.0".
