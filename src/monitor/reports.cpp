@@ -7,8 +7,8 @@
 
 #include "node/clock_status.h"
 #include "node/live_source.h"
-#include "nothing_heard.h"
 #include "parameters.h"
+#include "ros/nothing_heard.h"
 #include "ros/now.h"
 #include "ros/text.h"
 #include "ros/verdict/components.h"
@@ -17,6 +17,12 @@
 #include "session.h"
 
 namespace self_awareness {
+namespace {
+
+// Nothing heard since the start for longer is told [ns of steady time].
+constexpr std::int64_t kNothingHeard = 10 * core::kNanosecondsPerSecond;
+
+}  // namespace
 
 Reports::Reports(Host& host, ros::NodeHandle& node_handle, ros::NodeHandle& private_node_handle,
                  const std::string& name)
@@ -119,7 +125,9 @@ std::string Reports::nothingHeard(const ros1::HeardReport& heard, std::int64_t w
     return "";
   }
   return "nothing has been heard for " + ros1::number(std::floor(core::toSeconds(waited))) +
-         " s: " + whyNothingIsHeard(live.graph().get(), *host_.session()->encoder());
+         " s: " +
+         (live.graph() ? ros1::whyNothingIsHeard(*live.graph(), *host_.session()->encoder(), false)
+                       : "the master has not said who publishes");
 }
 
 }  // namespace self_awareness

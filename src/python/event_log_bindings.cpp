@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bindings.h"
+#include "ros/nothing_heard.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/bag_to_event_log.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
@@ -43,6 +44,23 @@ void bindEventLogs(py::module& m) {
       py::arg("encoding"), py::arg("publishers"), py::arg("subscribers"),
       "What nodes publish, and the encoding includes, and no node of the robot subscribes to:\n"
       "(source, topic). ValueError for a pattern that is no regular expression.");
+  m.def(
+      "why_nothing_is_heard",
+      [](const ros1::EncodingRules& encoding, const NodesOfTopics& publishers,
+         const NodesOfTopics& subscribers, const std::map<std::string, std::string>& types,
+         bool used_only) {
+        ros1::Graph graph = graphOf(publishers, subscribers, {});
+        for (auto& [name, topic] : graph.topics) {
+          const auto type = types.find(name);
+          topic.datatype = type == types.end() ? "" : type->second;
+        }
+        return ros1::whyNothingIsHeard(graph, ros1::Encoder(encoding, nullptr), used_only);
+      },
+      py::arg("encoding"), py::arg("publishers"), py::arg("subscribers"), py::arg("types"),
+      py::arg("used_only"),
+      "Why nothing of a robot is heard, in words. types: by topic; used_only: whether only what "
+      "a\n"
+      "node of the robot subscribes to is listened to.");
   m.def(
       "host_in", &ros1::hostIn, py::arg("uri"),
       "The name or the address in the URI of a node's XML-RPC server, printable; empty: there is "

@@ -98,6 +98,7 @@ from self_awareness._core import (  # noqa: F401
     stable_name,
     summarise_bag,
     unheard_publications,
+    why_nothing_is_heard,
     write_accepted,
     write_problem,
 )

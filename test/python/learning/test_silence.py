@@ -5,8 +5,7 @@ from typing import Dict, List
 
 import pytest
 
-from self_awareness import EncodingRules
-from self_awareness.learning.silence import why
+from self_awareness import EncodingRules, why_nothing_is_heard
 
 TYPES = {'/self_awareness/status': 'self_awareness/SelfAwareness'}
 OURS = {'/self_awareness/status': ['/watch'], '/extra': ['/watch'],
@@ -15,6 +14,14 @@ OURS = {'/self_awareness/status': ['/watch'], '/extra': ['/watch'],
 NO_ROBOT = 'no node of a robot publishes anything'
 PLAYER = ('/play_7 plays 2 topics; players are left out: use `score BAG` or `train BAG`, or '
           '`source: none` in the encoding')
+
+
+def why(encoding: EncodingRules, published: Dict[str, List[str]],
+        subscribed: Dict[str, List[str]], subscribe: str) -> str:
+    """Return what is said where nodes of this package run, too."""
+    return why_nothing_is_heard(
+        encoding, {topic: set(nodes) for topic, nodes in {**OURS, **published}.items()},
+        {topic: set(nodes) for topic, nodes in subscribed.items()}, TYPES, subscribe == 'used')
 
 
 @pytest.mark.parametrize('published, subscribed, subscribe, said', [
@@ -34,12 +41,10 @@ PLAYER = ('/play_7 plays 2 topics; players are left out: use `score BAG` or `tra
 ])
 def test_why(published: Dict[str, List[str]], subscribed: Dict[str, List[str]], subscribe: str,
              said: str) -> None:
-    assert why({**OURS, **published}.items(), subscribed.items(), TYPES, EncodingRules.defaults(),
-               subscribe) == said
+    assert why(EncodingRules.defaults(), published, subscribed, subscribe) == said
 
 
 def test_with_source_none_a_player_is_the_robot() -> None:
     encoding = EncodingRules.defaults()
     encoding.source = 'none'
-    assert why({**OURS, '/a': ['/play_7']}.items(), (), TYPES, encoding, 'all'
-               ) == 'nothing is sent on /a'
+    assert why(encoding, {'/a': ['/play_7']}, {}, 'all') == 'nothing is sent on /a'
