@@ -10,7 +10,7 @@ from self_awareness.output_files import replacing
 from self_awareness.workers import Processes
 from self_awareness_evaluation.ablation import bench as benches
 from self_awareness_evaluation.ablation.bench import Plan
-from self_awareness_evaluation.ablation.rows import Row, RowFile, judge, same
+from self_awareness_evaluation.ablation.rows import Row, RowFile, judge
 from self_awareness_evaluation.ablation.variants import DEFAULT, Variant
 
 Results = Dict[Variant, List[Row]]
@@ -35,7 +35,7 @@ def run(plan: Plan, variants: Sequence[Variant], path: Path, jobs: int) -> Resul
     rows = RowFile(path)
     default = Variant(DEFAULT)
     now = judge(bench, default)
-    if rows[default] and not same(rows[default], now):
+    if rows[default] and rows[default] != now:
         raise ValueError(f'{path}: the method was another one when this was measured; remove it '
                          'or choose another --output')
     if not rows[default]:

@@ -19,9 +19,6 @@ SOON_S = 5.0
 LEAST_LATENCY_S = 0.05
 """Medians that differ by less are told as the same [s]."""
 
-LEAST_COST = 0.2
-"""Shares of the time to judge that differ by less are told as the same: it varies."""
-
 KINDS = (CRASH, HALF_RATE, LATE, DEATH, CLOCKS, STARVED, OTHER, OUTAGE, RESTART)
 """Kinds of faults in the order of the tables."""
 
@@ -52,23 +49,15 @@ class Cell:
             for one, two, within in zip(self.values, other.values, self.same_within))
 
 
-def cells(rows: Sequence[Row], default: Sequence[Row]) -> Dict[str, Cell]:
-    """Return the figures of a variant by title, from its rows and those of the method as it is."""
+def cells(rows: Sequence[Row]) -> Dict[str, Cell]:
+    """Return the figures of a variant by title, from its rows."""
     found = {'false alarms': _alarms(rows, lambda row: row.alarms, 0.0),
              'WARN': _alarms(rows, lambda row: row.warnings, 1.0)}
     found.update({_TITLES[kind]: _found(_tally(rows, kind), kind) for kind in KINDS})
     found['alarms after a restart'] = _after(rows)
     every = _tally(rows, '')
     found['guilty first'] = Cell(every.named_first, (every.named - every.first,), (0.0,))
-    cost = cost_of(rows) / cost_of(default) if cost_of(default) else math.nan
-    found['time to judge'] = Cell(NONE if math.isnan(cost) else f'{100.0 * cost:.0f} %', (cost,),
-                                  (LEAST_COST,))
     return found
-
-
-def cost_of(rows: Sequence[Row]) -> float:
-    """Return the time that it took to judge normal operation [s]."""
-    return sum(row.cpu_s for row in rows if row.kind == NORMAL)
 
 
 def refused(rows: Sequence[Row]) -> List[str]:
@@ -92,8 +81,7 @@ def numbers(rows: Sequence[Row]) -> Dict[str, Any]:
                       f'{name}_median_s': f'{median:.3f}' if math.isfinite(median) else ''})
     found[f'{RESTART}_alarms_after'] = sum(_alarms_after(rows))
     every = _tally(rows, '')
-    found.update({'named': every.named, 'guilty_first': every.first,
-                  'judging_s': f'{cost_of(rows):.3f}'})
+    found.update({'named': every.named, 'guilty_first': every.first})
     return found
 
 

@@ -44,8 +44,7 @@ verdicts are each variant's own. False alarms and WARN also count what comes bef
 fault. Of faults, how many of all were found, and the median latency of all of them, which is left
 out where fewer than half were. *Alarms after a restart*: for who is back for {aftermath_s:g} s,
 all of them false. *Guilty first*: alarms after an onset that name the guilty one first, of those
-where one is. *Time to judge*: CPU time for normal operation, compared with the method as it is;
-the same command varies by some percent.
+where one is.
 
 All figures, apart for families, own robot and recordings: [{name}.csv]({name}.csv).
 """
@@ -53,8 +52,8 @@ All figures, apart for families, own robot and recordings: [{name}.csv]({name}.c
 _PARTS = """\
 ## Channels and rules
 
-Bold: differs from the method as it is. Medians that differ by less than {latency_s:g} s, times by
-less than {cost:.0f} % and WARN by one are told as the same.
+Bold: differs from the method as it is. Medians that differ by less than {latency_s:g} s and
+WARN by one are told as the same.
 """
 
 _NUMBERS = """\
@@ -98,7 +97,7 @@ def page(plan: Plan, results: Results, command: str) -> str:
         learnings=' and '.join(str(learning) for learning in plan.learnings), hours=plan.hours,
         faults=plan.faults, recordings='the recordings of real robots '
         '([which](recordings.md))' if plan.data else 'without the recordings of real robots'),
-        _PARTS.format(latency_s=figures.LEAST_LATENCY_S, cost=100.0 * figures.LEAST_COST),
+        _PARTS.format(latency_s=figures.LEAST_LATENCY_S),
         *_parts_table(results), '']
     if any(variant.kind == NUMBER for variant in results):
         lines += [_NUMBERS, *_numbers_table(results), '']
@@ -116,13 +115,12 @@ def _figures(variant: Variant, part: str, results: Results) -> Dict[str, Any]:
 
 
 def _parts_table(results: Results) -> List[str]:
-    rows = results[Variant(DEFAULT)]
-    default = figures.cells(rows, rows)
+    default = figures.cells(results[Variant(DEFAULT)])
     body = []
     for variant, of_variant in results.items():
         if variant.kind == NUMBER:
             continue
-        found = figures.cells(of_variant, rows)
+        found = figures.cells(of_variant)
         body.append([_named(variant), *(
             f'**{found[title].text}**' if found[title].differs(default[title])
             else found[title].text for title in default)])
@@ -166,8 +164,7 @@ def _cell(told: Sequence[Tuple[float, str]], chosen: Any) -> str:
 
 
 def _changes(results: Results, variant: Variant) -> str:
-    rows = results[Variant(DEFAULT)]
-    default, found = figures.cells(rows, rows), figures.cells(results[variant], rows)
+    default, found = figures.cells(results[Variant(DEFAULT)]), figures.cells(results[variant])
     return ', '.join(f'{title} {found[title].text}' for title in default
                      if found[title].differs(default[title]))
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 import csv
 import io
 import os
-import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Dict, Iterator, List, Optional, Sequence
@@ -45,7 +44,6 @@ class Row:
         warnings: times that a suspicion or an alarm began in it.
         latency_s: from the onset to the first alarm raised after it [s]; None: none was.
         first: whether that alarm names the guilty one first; None: no alarm, or nobody to name.
-        cpu_s: that it took to judge it [s].
         refused: why nothing could be judged; empty: it was.
         after: alarms for who was back already, all of them false; None: the fault lasts.
     """
@@ -61,7 +59,6 @@ class Row:
     warnings: int = 0
     latency_s: Optional[float] = None
     first: Optional[bool] = None
-    cpu_s: float = 0.0
     refused: str = ''
     after: Optional[int] = None
 
@@ -89,18 +86,15 @@ def _robot_rows(robot: Robot, variant: Variant, tuning: Tuning) -> Iterator[Row]
         if refused:
             yield replace(known, refused=refused)
             continue
-        begin = time.process_time()
-        judged = system.judge(recording)
-        yield _before(known, judged, recording.end, time.process_time() - begin)
+        yield _before(known, system.judge(recording), recording.end)
     for fault in robot.faults:
         row = replace(known, kind=fault.kind, name=fault.name, refused=refused)
         yield row if refused else _fault_row(row, fault, system)
 
 
 def _fault_row(row: Row, fault: Fault, system: Evidence) -> Row:
-    begin = time.process_time()
     judged = system.judge(fault.recording)
-    row = _before(row, judged, fault.onset, time.process_time() - begin)
+    row = _before(row, judged, fault.onset)
     alarms, after = alarms_until_return(judged.alarms, fault.back)
     row = replace(row, after=after)
     alarm = first_alarm(alarms, fault.onset)
@@ -111,13 +105,13 @@ def _fault_row(row: Row, fault: Fault, system: Evidence) -> Row:
                    first=None if first is None else bool(set(first) & set(fault.culprits)))
 
 
-def _before(row: Row, judged: Judged, until: int, cpu_s: float) -> Row:
+def _before(row: Row, judged: Judged, until: int) -> Row:
     """Return the row with what was judged before some time [ns]."""
     early = judged.start + DEFAULT_WINDOW <= until
     settled_h = int((early & ~judged.settling).sum()) * DEFAULT_WINDOW / SECOND_NS / _HOUR_S
     return replace(row, hours=settled_h,
                    alarms=sum(alarm.start <= until for alarm in judged.alarms),
-                   warnings=beginnings(np.asarray(judged.noticed & early)), cpu_s=cpu_s)
+                   warnings=beginnings(np.asarray(judged.noticed & early)))
 
 
 def _case_rows(case: outages.Case, data: Path, variant: Variant, tuning: Tuning) -> Iterator[Row]:
@@ -132,12 +126,6 @@ def _case_rows(case: outages.Case, data: Path, variant: Variant, tuning: Tuning)
     if case.outage is not None:
         yield replace(row, kind=OUTAGE, hours=0.0, alarms=0,
                       latency_s=None if row.refused else found.latency_s)
-
-
-def same(ours: Sequence[Row], theirs: Sequence[Row]) -> bool:
-    """Return whether two say the same, whatever time they took."""
-    return ([replace(row, cpu_s=0.0) for row in ours]
-            == [replace(row, cpu_s=0.0) for row in theirs])
 
 
 class RowFile:

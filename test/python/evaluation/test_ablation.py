@@ -16,7 +16,7 @@ from self_awareness_evaluation import evaluate, row_files
 from self_awareness_evaluation.ablation import bench as benches, experiment, figures, report
 from self_awareness_evaluation.ablation.bench import (FAMILIES, OTHER, OWN, Bench, Fault, Plan,
                                                       Robot)
-from self_awareness_evaluation.ablation.rows import Row, RowFile, judge, same
+from self_awareness_evaluation.ablation.rows import Row, RowFile, judge
 from self_awareness_evaluation.ablation.variants import (CHANNEL, DEFAULT, NUMBER, RULE, Variant,
                                                          variants)
 from self_awareness_evaluation.detectors import Evidence
@@ -93,7 +93,6 @@ def test_a_variant_is_measured_on_every_record() -> None:
         'default', FAMILIES, 'small 1', 'two', NORMAL)
     assert normal.hours == pytest.approx(55.0 / 3600.0, rel=0.01)
     assert (normal.alarms, normal.latency_s, normal.refused) == (0, None, '')
-    assert normal.cpu_s > 0.0
     assert (crash.kind, crash.name, crash.first) == (CRASH, 'player', True)
     assert crash.latency_s is not None and 0.0 < crash.latency_s < 1.0
     assert crash.hours == pytest.approx(15.0 / 3600.0, rel=0.02)  # what was before the onset
@@ -111,7 +110,7 @@ def test_alarms_for_who_is_back_are_counted(monkeypatch: pytest.MonkeyPatch) -> 
         np.zeros(2, bool)))
     _, found = judge(Bench([replace(bench.robots[0], faults=[crash])], None), AS_IT_IS)
     assert (found.latency_s, found.after) == (1.0, 1)
-    cells = figures.cells([found, row(kind=RESTART, after=2)], [row()])
+    cells = figures.cells([found, row(kind=RESTART, after=2)])
     assert cells['alarms after a restart'].text == '3 after 2'
 
 
@@ -123,8 +122,7 @@ def test_where_no_limits_can_be_found_nothing_is_judged() -> None:
 
 
 def row(variant: str = 'default', **changed: Any) -> Row:
-    return replace(Row(variant, FAMILIES, 'small 1', 'two', NORMAL, hours=1.0, cpu_s=0.5),
-                   **changed)
+    return replace(Row(variant, FAMILIES, 'small 1', 'two', NORMAL, hours=1.0), **changed)
 
 
 def test_rows_are_kept_and_a_torn_line_is_not(tmp_path: Path) -> None:
@@ -191,28 +189,23 @@ def test_rows_of_another_plan_or_method_are_refused(judged: Path, tmp_path: Path
     assert judged.is_dir()
 
 
-def test_the_same_says_the_same_whatever_time_it_took() -> None:
-    assert same([row(cpu_s=1.0)], [row(cpu_s=2.0)])
-    assert not same([row()], [row(alarms=1)])
-
-
 def test_the_page_marks_what_differs() -> None:
-    default = [row(), row(kind=CRASH, hours=0.0, cpu_s=0.0, latency_s=0.25, first=True)]
+    default = [row(), row(kind=CRASH, hours=0.0, latency_s=0.25, first=True)]
     late = [row(), replace(default[1], latency_s=7.0, first=False)]
     half, double = (factor * FIRST.default for factor in (0.5, 2.0))
     results = {AS_IT_IS: default, Variant(CHANNEL, SOME): default,
                Variant(RULE, OFF.name, OFF.off): late, Variant(NUMBER, FIRST.name, half): late,
                Variant(NUMBER, FIRST.name, double): default,
-               Variant(NUMBER, SECOND.name, SECOND.most): [row(cpu_s=0.52), default[1]]}
+               Variant(NUMBER, SECOND.name, SECOND.most): default}
     page = report.page(PLAN, results, 'rosrun self_awareness evaluate ablation')
     lines = page.splitlines()
     crash = '1 / 1 of 1, 0.25 s'
     nothing = ' | '.join('–' * 9)
     for told in ('as it is', f'without {SOME}'):
-        assert (f'| {told} | 0 in 1.0 h | 0 in 1.0 h | {crash} | {nothing} | 1 of 1 | 100 % |'
+        assert (f'| {told} | 0 in 1.0 h | 0 in 1.0 h | {crash} | {nothing} | 1 of 1 |'
                 in lines)
     assert (f'| {OFF.name} off | 0 in 1.0 h | 0 in 1.0 h | **0 / 1 of 1, 7.00 s** '
-            f'| {nothing} | **0 of 1** | 100 % |' in lines)
+            f'| {nothing} | **0 of 1** |' in lines)
     changed = next(line for line in lines if line.startswith(f'| `{FIRST.name}`'))
     assert changed.endswith(
         f' | {half:g}: crashes, within 5 s / at all 0 / 1 of 1, 7.00 s, guilty first 0 of 1 '
@@ -224,7 +217,7 @@ def test_figures_tell_small_differences_as_the_same() -> None:
     default = [row(), row(kind=OTHER, latency_s=0.5)]
     for changed, differs in ((0.54, False), (0.6, True), (None, True)):
         other = [default[0], replace(default[1], latency_s=changed)]
-        cells = [figures.cells(rows, default)['other faults'] for rows in (default, other)]
+        cells = [figures.cells(rows)['other faults'] for rows in (default, other)]
         assert cells[1].differs(cells[0]) == differs
 
 
