@@ -49,9 +49,12 @@ OPTIONAL = {
     'selenium',             # the test of the report in a browser
     'dynamic_reconfigure', 'hmmlearn', 'sklearn',  # the evaluation, which is not installed
 }
+OF_THE_BUILD = {'catkin', 'message_generation', 'message_runtime', 'python3-setuptools',
+                'python3-pytest-xdist', 'rosbash'}
+"""What builds, tests or starts without a name in the code."""
 OF_THE_SYSTEM = {'arpa', 'linux', 'netinet', 'sys'}  # folders of C headers
-PROGRAMS = ('dot', 'rosbag', 'roscore', 'roslaunch', 'rosnode', 'rospack', 'rosparam', 'rosrun',
-            'rosservice', 'rostopic')
+PROGRAMS = ('dot', 'rosbag', 'roscore', 'roslaunch', 'rosmaster', 'rosnode', 'rospack', 'rosparam',
+            'rosrun', 'rosservice', 'rostopic')
 
 BUILD = ('buildtool_depend', 'build_depend', 'depend')
 RUN = ('exec_depend', 'depend')
@@ -179,6 +182,22 @@ def test_what_the_tests_need() -> None:
         needed.add('pytest-xdist')
     assert {'gtest', 'hypothesis', 'nlohmann_json', 'pytest', 'pytest-xdist', 'rostopic'} <= needed
     assert _missing(needed, *TEST) == []
+
+
+def test_nothing_is_named_that_nobody_needs() -> None:
+    code = (*INSTALLED, *TESTS, 'benchmark/*.py', 'examples/*.py')
+    needed = (_found_by_cmake('CMakeLists.txt', 'src/core/CMakeLists.txt', 'test/**/CMakeLists.txt')
+              | _included('include', 'src', 'test', 'benchmark') | _imported(*code)
+              | _started(*code))
+    text = ''.join(path.read_text(encoding='utf-8')
+                   for path in _files('launch/*.launch', 'test/*.test', 'msg/*.msg', 'srv/*.srv',
+                                      'test/CMakeLists.txt', 'setup.cfg', '.pre-commit-config.yaml'))
+    named = _named('buildtool_depend', 'build_export_depend', 'test_depend', *BUILD, *RUN)
+    keys = {KEYS.get(name, name) for name in needed}
+    unused = {key for key in named - OF_THE_BUILD - keys
+              if key.replace('python3-', '') not in needed
+              and not re.search(rf'\b{key.replace("python3-", "")}\b', text)}
+    assert unused == set()
 
 
 def test_what_setup_cfg_configures_and_what_mypy_takes_as_it_is() -> None:
