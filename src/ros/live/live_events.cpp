@@ -253,16 +253,9 @@ LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {
   }
   const Connection connection = connectionFrom(*arrival.header, *arrival.topic);
   return connections_
-      .try_emplace(arrival.header.get(), LiveConnection{arrival.header,
-                                                        arrival.topic,
-                                                        AttributeReader(connection),
-                                                        std::nullopt,
-                                                        connect(connection),
-                                                        senders_.connect(connection, *encoder_),
-                                                        std::nullopt,
-                                                        {},
-                                                        nullptr,
-                                                        0})
+      .try_emplace(arrival.header.get(),
+                   LiveConnection{arrival.header, arrival.topic, AttributeReader(connection),
+                                  connect(connection), senders_.connect(connection, *encoder_)})
       .first->second;
 }
 

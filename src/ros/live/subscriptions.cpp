@@ -122,10 +122,8 @@ void Subscriptions::compare(const Listening& listening, std::int64_t now) {
         if (before != known.end()) {
           missing_.insert(*before);
         } else {
-          Missing& missing = missing_[publication];
-          missing.since = now;
-          missing.tell_at = now;  // roscpp leaves alone whom it is about to connect to
-          missing.pause = kMissing;
+          // Told at once: roscpp leaves alone whom it is about to connect to.
+          missing_[publication] = {now, now, kMissing};
         }
       }
     }

@@ -99,15 +99,15 @@ class LiveEvents {
     boost::shared_ptr<ros::M_string> header;  // keeps the key below alive
     std::shared_ptr<const std::string> topic;
     AttributeReader attributes;
-    std::optional<std::int64_t> read_at;       // last [ns of steady time]; none: not yet
     std::optional<ConnectionEncoder> encoder;  // none: left out by the rules
     std::shared_ptr<SenderWatch::Link> link;   // none: nothing is to be learned of it
+    std::optional<std::int64_t> read_at{};     // last [ns of steady time]; none: not yet
     // While it may be left out by a graph to come: until when, from its first message on [ns of
     // steady time], and what it said.
-    std::optional<std::int64_t> held_until;
-    std::vector<core::Event> held;
-    std::shared_ptr<const Content> mode;  // the last message that told one; none: it did not
-    std::int64_t mode_told = 0;           // then [ns of steady time]
+    std::optional<std::int64_t> held_until{};
+    std::vector<core::Event> held{};
+    std::shared_ptr<const Content> mode{};  // the last message that told one; none: it did not
+    std::int64_t mode_told = 0;             // then [ns of steady time]
   };
 
   /// Chooses anew what is left out, of connections that were heard.

@@ -76,7 +76,6 @@ class Subscriptions {
     std::int64_t pause = 0;    // after that [ns]
     std::string why = "has not answered yet";
   };
-
   struct Shared {
     std::vector<Unheard> unheard;
   };
