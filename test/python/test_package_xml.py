@@ -186,12 +186,14 @@ def test_what_the_tests_need() -> None:
 
 def test_nothing_is_named_that_nobody_needs() -> None:
     code = (*INSTALLED, *TESTS, 'benchmark/*.py', 'examples/*.py')
-    needed = (_found_by_cmake('CMakeLists.txt', 'src/core/CMakeLists.txt', 'test/**/CMakeLists.txt')
+    needed = (_found_by_cmake('CMakeLists.txt', 'src/core/CMakeLists.txt',
+                              'test/**/CMakeLists.txt')
               | _included('include', 'src', 'test', 'benchmark') | _imported(*code)
               | _started(*code))
     text = ''.join(path.read_text(encoding='utf-8')
                    for path in _files('launch/*.launch', 'test/*.test', 'msg/*.msg', 'srv/*.srv',
-                                      'test/CMakeLists.txt', 'setup.cfg', '.pre-commit-config.yaml'))
+                                      'test/CMakeLists.txt', 'setup.cfg',
+                                      '.pre-commit-config.yaml'))
     named = _named('buildtool_depend', 'build_export_depend', 'test_depend', *BUILD, *RUN)
     keys = {KEYS.get(name, name) for name in needed}
     unused = {key for key in named - OF_THE_BUILD - keys

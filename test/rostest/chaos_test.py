@@ -13,7 +13,7 @@ import tempfile
 import threading
 import time
 from contextlib import ExitStack
-from typing import Any, Iterator, List, Optional, Set, Tuple
+from typing import Iterator, List, Optional, Set, Tuple
 from xmlrpc.client import ServerProxy
 
 import rosgraph
