@@ -11,7 +11,7 @@
 #include <iterator>
 #include <vector>
 
-#include "live/master_calls.h"
+#include "master_calls.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"

@@ -1,8 +1,15 @@
 #include "self_awareness/ros/live/arrivals.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace self_awareness::ros1 {
+namespace {
+
+// So long after that, a connection of no content is forgotten: it may be closed [ns].
+constexpr std::int64_t kForgotten = 10 * core::kNanosecondsPerSecond;
+
+}  // namespace
 
 Arrivals::Arrivals(std::uint32_t queue_size, std::function<void()> wake)
     : queue_size_(queue_size), wake_(std::move(wake)) {}
@@ -12,7 +19,12 @@ void Arrivals::add(Arrival arrival) {
   {
     const auto waiting = waiting_.lock();
     ++waiting->arrived;
-    const std::size_t bytes = arrival.message->size();
+    arrival.size = arrival.message->size();
+    const auto no_content = waiting->no_content_until.find(arrival.header.get());
+    if (no_content != waiting->no_content_until.end() && arrival.steady < no_content->second) {
+      arrival.message.reset();
+    }
+    const std::size_t bytes = arrival.message ? arrival.size : 0;
     std::uint32_t& of_connection = waiting->of_connection[arrival.header.get()];
     // A single message is taken however long it is.
     const bool too_long = waiting->bytes > 0 && waiting->bytes + bytes > kMostBytes;
@@ -39,6 +51,15 @@ void Arrivals::drop(Waiting& waiting, const Arrival& arrival) {
                    [&](const Dropped& known) { return known.header == arrival.header; })) {
     waiting.dropped_of.push_back({arrival.topic, arrival.header});
   }
+}
+
+void Arrivals::dropContent(const ros::M_string* header, std::int64_t until) {
+  const auto waiting = waiting_.lock();
+  auto& all = waiting->no_content_until;
+  for (auto each = all.begin(); each != all.end();) {
+    each = each->second < until - kForgotten ? all.erase(each) : std::next(each);
+  }
+  all[header] = until;
 }
 
 void Arrivals::setInterval(std::int64_t interval) {

@@ -157,8 +157,11 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     live.attributes.begin(content_.size());
     live.attributes.add(content_.data(), content_.size());
     event.attributes = live.attributes.end(arrival.stamp);
+    if (arrival.size > kLarge && !encoder->needsContent()) {
+      arrivals_.dropContent(arrival.header.get(), arrival.steady + kBetweenReads);
+    }
   } else {
-    event.attributes = live.attributes.skip(arrival.message->size());
+    event.attributes = live.attributes.skip(arrival.size);
   }
   if (event.stamp != arrival.stamp) {
     event.attributes = {};  // the age is that by a clock which does not count
@@ -169,6 +172,8 @@ void LiveEvents::onArrival(const Arrival& arrival) {
   }
   if (!encoder->needsContent()) {
     event.id = encoder->id();
+  } else if (!arrival.message) {
+    return;  // it came for the encoder before
   } else {
     try {
       if (encoder->tellsMode()) {
@@ -193,13 +198,13 @@ void LiveEvents::onArrival(const Arrival& arrival) {
 }
 
 bool LiveEvents::isRead(const LiveConnection& live, const Arrival& arrival) {
-  return live.encoder->needsContent() || arrival.message->size() <= kLarge || !live.read_at ||
-         arrival.steady - *live.read_at >= kBetweenReads;
+  return arrival.message && (live.encoder->needsContent() || arrival.size <= kLarge ||
+                             !live.read_at || arrival.steady - *live.read_at >= kBetweenReads);
 }
 
 void LiveEvents::read(const Arrival& arrival) {
-  content_.resize(arrival.message->size());
-  ros::serialization::OStream stream(content_.data(), arrival.message->size());
+  content_.resize(arrival.size);
+  ros::serialization::OStream stream(content_.data(), arrival.size);
   arrival.message->write(stream);
 }
 

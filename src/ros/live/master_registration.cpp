@@ -12,7 +12,7 @@
 
 #include <utility>
 
-#include "master_calls.h"
+#include "../master_calls.h"
 #include "own_node.h"
 
 namespace self_awareness::ros1 {

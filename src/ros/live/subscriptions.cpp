@@ -4,6 +4,7 @@
 #include <ros/subscribe_options.h>
 
 #include <algorithm>
+#include <atomic>
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
 #include <iterator>
@@ -23,17 +24,9 @@ constexpr std::int64_t kMissing = 3 * core::kNanosecondsPerSecond;
 constexpr std::int64_t kLongestPause = 60 * core::kNanosecondsPerSecond;
 // Each may have to be waited for; who waits longest comes first.
 constexpr std::size_t kMostAtATime = 20;
-// Arrivals has the queue: it counts what a publisher loses.
-constexpr std::uint32_t kQueue = 1;
-
-/// Has a message taken by the thread of roscpp that received it: it only goes to Arrivals.
-class AtOnce : public ros::CallbackQueueInterface {
- public:
-  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t /*owner*/) override {
-    callback->call();
-  }
-  void removeByID(std::uint64_t /*owner*/) override {}
-};
+// Of large messages that wait to be copied; else Arrivals has the queue, and counts what is lost.
+constexpr std::uint32_t kQueue = 20;
+constexpr std::size_t kLarge = 65536;  // [bytes]
 
 std::size_t numberOfAddresses(const std::set<Publisher>& publishers) {
   std::set<std::string> addresses;
@@ -69,8 +62,33 @@ std::string whyMissing(const std::string& uri) {
 
 }  // namespace
 
-Subscriptions::Subscriptions(Arrivals& arrivals)
-    : arrivals_(arrivals), at_once_(std::make_unique<AtOnce>()) {}
+/// Has a message taken by the thread of roscpp that received it: it only goes to Arrivals. Where
+/// messages are large, another thread copies them: if one and the same thread receives and copies,
+/// malloc returns the memory of both to the system each time, and every page of the next message
+/// is a fault.
+class Subscriptions::Queue : public ros::CallbackQueueInterface {
+ public:
+  explicit Queue(ros::CallbackQueueInterface& large) : large_(large) {}
+  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t owner) override {
+    if (is_large_) {
+      large_.addCallback(callback, owner);
+    } else {
+      callback->call();
+    }
+  }
+  void removeByID(std::uint64_t owner) override { large_.removeByID(owner); }
+  void onMessage(std::size_t size) { is_large_ = is_large_ || size > kLarge; }
+
+ private:
+  ros::CallbackQueueInterface& large_;
+  std::atomic<bool> is_large_{false};  // the topic's messages are
+};
+
+Subscriptions::Subscriptions(Arrivals& arrivals) : arrivals_(arrivals) {
+  copying_.start();
+}
+
+Subscriptions::~Subscriptions() = default;
 
 void Subscriptions::listen(const Listening& listening) {
   for (auto each = subscribers_.begin(); each != subscribers_.end();) {
@@ -92,11 +110,15 @@ void Subscriptions::subscribe(const std::string& topic) {
   using topic_tools::ShapeShifter;
   const auto name = std::make_shared<const std::string>(topic);
   ros::NodeHandle node_handle("", {{topic, topic}});  // what the master calls so is not remapped
-  node_handle.setCallbackQueue(at_once_.get());
-  subscribers_[topic] = node_handle.subscribe<ShapeShifter>(
+  Subscribed& subscribed = subscribers_[topic];
+  subscribed.queue = std::make_unique<Queue>(large_);
+  node_handle.setCallbackQueue(subscribed.queue.get());
+  subscribed.subscriber = node_handle.subscribe<ShapeShifter>(
       topic, kQueue,
       boost::function<void(const ros::MessageEvent<const ShapeShifter>&)>(
-          [this, name](const ros::MessageEvent<const ShapeShifter>& event) {
+          [this, name,
+           queue = subscribed.queue.get()](const ros::MessageEvent<const ShapeShifter>& event) {
+            queue->onMessage(event.getConstMessage()->size());
             arrivals_.add({name, event.getConnectionHeaderPtr(),
                            fromRosTime(event.getReceiptTime()), steadyNow(),
                            event.getConstMessage()});
@@ -106,7 +128,8 @@ void Subscriptions::subscribe(const std::string& topic) {
 
 void Subscriptions::compare(const Listening& listening, std::int64_t now) {
   const auto is_complete = [&](const auto& topic) {
-    return subscribers_.at(topic.first).getNumPublishers() == numberOfAddresses(topic.second);
+    return subscribers_.at(topic.first).subscriber.getNumPublishers() ==
+           numberOfAddresses(topic.second);
   };
   if (std::all_of(listening.topics.begin(), listening.topics.end(), is_complete)) {
     missing_.clear();

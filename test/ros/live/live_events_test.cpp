@@ -277,7 +277,7 @@ TEST_F(LiveEventsTest, TwoOfOneProcessDoNotDisturbEachOther) {
 TEST_F(LiveEventsTest, WhatWaitsTakesBoundedMemory) {
   const ros::Publisher publisher = advertise("/a");
   const std_msgs::String big = message(std::string(4 * kMegabyte, ' '));
-  publish(publisher, big);
+  publish(publisher, message("small"));  // of large ones, the content is dropped once one was read
   ASSERT_EQ(delivered().size(), 1U);
   const std::size_t before = residentBytes();
   for (int i = 0; i < 100; ++i) {
@@ -305,6 +305,12 @@ TEST_F(LiveEventsTest, OfLargeMessagesOneASecondIsRead) {
   publish(publisher, message(content + "b"));
   EXPECT_EQ(delivered().size(), 1U);
   EXPECT_TRUE(attributes_.same) << "until the next one is read";
+  publish(publisher, message(content + "c"));
+  std::vector<Arrival> waiting;
+  live_events_->arrivals().take(waiting);
+  ASSERT_EQ(waiting.size(), 1U);
+  EXPECT_EQ(waiting.front().message, nullptr) << "images that wait would fill the memory";
+  EXPECT_EQ(waiting.front().size, content.size() + 1 + sizeof(std::uint32_t));
 }
 
 TEST_F(LiveEventsTest, AChangeOfReadingLosesNothingAndCountsNothingTwice) {

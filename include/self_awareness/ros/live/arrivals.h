@@ -20,10 +20,11 @@ namespace self_awareness::ros1 {
 /// One message, as roscpp received it.
 struct Arrival {
   std::shared_ptr<const std::string> topic;
-  boost::shared_ptr<ros::M_string> header;  ///< all messages of a connection share one
-  std::int64_t stamp = 0;                   ///< ROS time of its receipt [ns]
-  std::int64_t steady = 0;                  ///< the same by the steady clock [ns]
-  topic_tools::ShapeShifter::ConstPtr message;
+  boost::shared_ptr<ros::M_string> header;      ///< all messages of a connection share one
+  std::int64_t stamp = 0;                       ///< ROS time of its receipt [ns]
+  std::int64_t steady = 0;                      ///< the same by the steady clock [ns]
+  topic_tools::ShapeShifter::ConstPtr message;  ///< null: nobody wants its content
+  std::uint32_t size = 0;                       ///< of the message [bytes]
 };
 
 /// Keeps what arrives, in any thread, for the one thread that takes it, many messages at a time.
@@ -46,6 +47,9 @@ class Arrivals {
   Arrivals(std::uint32_t queue_size, std::function<void()> wake);
 
   void add(Arrival arrival);
+  /// Messages of this connection are taken without their content until then [ns of steady time]:
+  /// several images that wait at once cost more time and memory than one after the other.
+  void dropContent(const ros::M_string* header, std::int64_t until);
 
   /// Wakes with the first arrival in each interval [ns] of the absolute grid.
   void setInterval(std::int64_t interval);
@@ -63,6 +67,7 @@ class Arrivals {
     // How many arrivals, by the connection's header, which the arrivals keep alive.
     std::unordered_map<const ros::M_string*, std::uint32_t> of_connection;
     std::size_t bytes = 0;
+    std::unordered_map<const ros::M_string*, std::int64_t> no_content_until;
     std::vector<Dropped> dropped_of;
     std::uint64_t arrived = 0;
     std::uint64_t dropped = 0;

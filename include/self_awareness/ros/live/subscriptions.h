@@ -1,7 +1,8 @@
 #pragma once
 
-#include <ros/callback_queue_interface.h>
+#include <ros/callback_queue.h>
 #include <ros/node_handle.h>
+#include <ros/spinner.h>
 #include <ros/subscriber.h>
 
 #include <cstddef>
@@ -61,6 +62,7 @@ class Subscriptions {
   explicit Subscriptions(Arrivals& arrivals);
   Subscriptions(const Subscriptions&) = delete;
   Subscriptions& operator=(const Subscriptions&) = delete;
+  ~Subscriptions();
 
   /// Listens to these topics and to no others. To be called again and again: it also looks who is
   /// missing.
@@ -79,6 +81,11 @@ class Subscriptions {
   struct Shared {
     std::vector<Unheard> unheard;
   };
+  class Queue;
+  struct Subscribed {
+    std::unique_ptr<Queue> queue;  // first: the subscriber uses it
+    ros::Subscriber subscriber;
+  };
 
   void subscribe(const std::string& topic);
   /// Notes who is missing, and since when.
@@ -89,8 +96,9 @@ class Subscriptions {
   std::vector<Unheard> missingFor3s(const std::set<std::string>& first, std::int64_t now) const;
 
   Arrivals& arrivals_;
-  const std::unique_ptr<ros::CallbackQueueInterface> at_once_;
-  std::map<std::string, ros::Subscriber> subscribers_;  // by topic
+  ros::CallbackQueue large_;  // large messages, that wait to be copied
+  ros::AsyncSpinner copying_{1, &large_};
+  std::map<std::string, Subscribed> subscribers_;  // by topic
   std::map<Publication, Missing> missing_;
   Guarded<Shared> shared_;
 };
