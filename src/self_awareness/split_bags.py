@@ -15,7 +15,7 @@ Span = Optional[Tuple[int, int]]
 _NAME = re.compile(r'(?P<prefix>.*?)(?P<date>_?\d{4}(-\d\d){5})?_(?P<number>\d+)\.bag')
 """PREFIX_DATE_N.bag. The date is that of the file, so it may differ in one recording."""
 
-_GAP_NS = SECOND_NS
+_GAP_NS = SECOND_NS // 2
 """A split leaves no gap but the time to the next message. To end a recorder and to start another
 one takes longer: people number recordings in this way, too."""
 _GAP_OF_DATED_NS = 60 * SECOND_NS

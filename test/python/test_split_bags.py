@@ -60,6 +60,7 @@ def test_files_are_joined_by_number_and_time() -> None:
 @pytest.mark.parametrize('files', [
     [('run_0.bag', 0, 30), ('run_2.bag', 30.04, 60)],  # one is missing
     [('run_1.bag', 0, 30), ('run_2.bag', 33, 60)],  # numbered by people
+    [('run_1.bag', 0, 30), ('run_2.bag', 30.9, 60)],  # by a script
     [('run_1.bag', 0, 30), ('run_2.bag', 20, 60)],  # of two recorders
     [('run_0.bag', 0, 30), ('walk_1.bag', 30.04, 60)],
     [('a/run_0.bag', 0, 30), ('b/run_1.bag', 30.04, 60)],  # of two robots
