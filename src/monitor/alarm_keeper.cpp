@@ -39,9 +39,7 @@ void AlarmKeeper::onAlarm(const ros1::AlarmState& alarm) {
 }
 
 void AlarmKeeper::onReport(MonitorState& state) {
-  if (!error().empty()) {
-    state.keeper_error = error();
-  }
+  state.keeper_error = error();
 }
 
 std::optional<self_awareness::StandingAlarm> AlarmKeeper::read() {

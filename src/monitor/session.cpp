@@ -28,7 +28,8 @@ std::unique_ptr<Session> Session::load(const std::string& path,
                                        const MonitorParameters& parameters,
                                        core::Detector::Handler handler) {
   if (path.empty()) {
-    throw ros1::ModelFileError("~model is not set; give it the path of a model file");
+    throw ros1::ModelFileError(parameters.recorder.name +
+                               "/model is not set; give it the path of a model file");
   }
   ros1::TrainedModel trained = ros1::loadModel(
       path, parameters.method == MonitorParameters::Method::kPaper ? ros1::ModelCounts::kDelays

@@ -26,7 +26,6 @@ constexpr std::int64_t kLongestPause = 60 * core::kNanosecondsPerSecond;
 constexpr std::size_t kMostAtATime = 20;
 // Of large messages that wait to be copied; else Arrivals has the queue, and counts what is lost.
 constexpr std::uint32_t kQueue = 20;
-constexpr std::size_t kLarge = 65536;  // [bytes]
 
 std::size_t numberOfAddresses(const std::set<Publisher>& publishers) {
   std::set<std::string> addresses;
@@ -77,7 +76,7 @@ class Subscriptions::Queue : public ros::CallbackQueueInterface {
     }
   }
   void removeByID(std::uint64_t owner) override { large_.removeByID(owner); }
-  void onMessage(std::size_t size) { is_large_ = is_large_ || size > kLarge; }
+  void onMessage(std::size_t size) { is_large_ = is_large_ || size > Arrivals::kLarge; }
 
  private:
   ros::CallbackQueueInterface& large_;

@@ -35,6 +35,8 @@ class Arrivals {
  public:
   /// Most bytes of messages that may wait, of all connections together.
   static constexpr std::size_t kMostBytes = 200000000;
+  /// Larger messages [bytes] are copied by a thread of their own, and read seldom.
+  static constexpr std::uint32_t kLarge = 65536;
 
   /// A connection of which messages were dropped.
   struct Dropped {

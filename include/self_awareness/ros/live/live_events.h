@@ -41,7 +41,7 @@ class LiveEvents {
   static constexpr std::size_t kMostHeld = 100;
   /// Larger messages [bytes] are read once in kBetweenReads [ns of steady time], unless the
   /// encoding needs each: that is enough to see that an image is frozen, or old.
-  static constexpr std::uint32_t kLarge = 65536;
+  static constexpr std::uint32_t kLarge = Arrivals::kLarge;
   static constexpr std::int64_t kBetweenReads = 1000000000;
 
   struct Handlers {
