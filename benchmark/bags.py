@@ -14,17 +14,16 @@ import argparse
 import json
 import os
 import statistics
-import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 import bags_report
 import bags_robot
-import bags_timers
 import page
+import timers
+from programs import Usage, built, run
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _SECONDS = 160.0
@@ -44,36 +43,6 @@ class Program(NamedTuple):
 
     work: List[str]
     start: List[str]
-
-
-class Usage(NamedTuple):
-    """What a process used, in all its threads."""
-
-    wall_s: float
-    cpu_s: float
-    read_bytes: int
-    """By read(2), from any file."""
-    disk_bytes: int
-    """From the disk."""
-
-
-def run(command: Sequence[str]) -> Usage:
-    """Run a program to its end.
-
-    Raises:
-        RuntimeError: the program failed.
-    """
-    begin = time.perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-    os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)  # keeps the counts of the process
-    wall = time.perf_counter() - begin
-    io = dict(line.split(': ') for line in
-              Path(f'/proc/{process.pid}/io').read_text().splitlines())
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = status
-    if status != 0:
-        raise RuntimeError(f'{" ".join(command)} failed')
-    return Usage(wall, usage.ru_utime + usage.ru_stime, int(io['rchar']), int(io['read_bytes']))
 
 
 def forget(path: str) -> None:
@@ -96,8 +65,8 @@ def programs(bag: str, model: str) -> Dict[str, Program]:
     Raises:
         FileNotFoundError: a program is not built.
     """
-    view = _built('bags_view_iteration')
-    train = _built('train')
+    view = built('bags_view_iteration')
+    train = built('train')
     return {
         'view': Program([view, bag], [view]),
         'read_messages': Program([sys.executable, '-c', _RAW, bag],
@@ -150,14 +119,14 @@ def measure_images(folder: str, seconds: float, rounds: int) -> Dict[str, Any]:
 def measure_jobs(folder: str, seconds: float, rounds: int) -> Dict[str, Any]:
     """Make bags of many event types, of so many seconds each; return medians by --jobs."""
     print('making the bags', file=sys.stderr)
-    bags, messages = bags_timers.write(folder, _PARTS, _PART_TYPES, seconds)
+    bags, messages = timers.write(folder, _PARTS, _PART_TYPES, seconds)
     for bag in bags:
         warm(bag)
     print('measuring', file=sys.stderr)
     usages: Dict[int, List[Usage]] = {jobs: [] for jobs in _JOBS}
     for _ in range(rounds):
         for jobs, of_jobs in usages.items():
-            of_jobs.append(run([_built('train'), *bags, '-o', os.path.join(folder, 'm'),
+            of_jobs.append(run([built('train'), *bags, '-o', os.path.join(folder, 'm'),
                                 '--jobs', str(jobs)]))
     return dict(page.machine(), rounds=rounds, seconds=seconds, bags=_PARTS,
                 types=_PART_TYPES, messages=messages,
@@ -193,15 +162,6 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     page.publish('bags', result, bags_report.markdown(result), arguments.output)
     print(bags_report.markdown(result))
     return 0
-
-
-def _built(name: str) -> str:
-    for folder in os.environ.get('CMAKE_PREFIX_PATH', '').split(':'):
-        path = os.path.join(folder, 'lib', 'self_awareness', name)
-        if os.access(path, os.X_OK):
-            return path
-    raise FileNotFoundError(f'{name} is not built, or its workspace not sourced: catkin_make '
-                            'bags_benchmark')
 
 
 def _median(usages: Sequence[Usage], field: str) -> float:

@@ -7,7 +7,7 @@ import argparse
 import json
 import statistics
 from pathlib import Path
-from typing import Any, Dict, List, Optional
+from typing import Any, Callable, Dict, List, Optional
 
 from page import publish, table
 
@@ -33,7 +33,7 @@ def _medians(benchmarks: List[Measured]) -> Dict[str, Measured]:
     return medians
 
 
-def summary(raw: Measured, numpy: Dict[str, Dict[str, float]]) -> Measured:
+def summary(raw: Measured) -> Measured:
     """Return the results of every detector, by number of event types."""
     medians = _medians(raw['benchmarks'])
     result: Measured = {'date': raw['context']['date'][:10]}
@@ -47,9 +47,8 @@ def summary(raw: Measured, numpy: Dict[str, Dict[str, float]]) -> Measured:
                   for step in ('lookUp', 'train', 'load', 'closeWindow', 'choose')}
             rows[size] = {
                 'event_ns': score['time'] * 1e6,
-                'terms': score['terms'],
-                'lookup_ns': of['lookUp']['time'] * 1e6,
-                'numpy_ns': numpy[detector][size],
+                'terms': score.get('terms'),
+                'lookup_ns': of['lookUp']['time'] * 1e6 if of['lookUp'] else None,
                 'window_ns': of['closeWindow']['time'] * 1e6 if of['closeWindow'] else None,
                 'train_events_per_s': of['train']['events'] / of['train']['time'] * 1e3,
                 'train_bytes': of['train']['bytes'],
@@ -68,38 +67,50 @@ def _number(value: Optional[float], digits: int = 3) -> str:
     return f'{value:,.0f}' if value >= 10 ** (digits - 1) else f'{value:.{digits}g}'
 
 
+def _ratio(row: Measured, over: str, under: str) -> Optional[float]:
+    return row[over] / row[under] if row[under] else None
+
+
+_SCORING: Dict[str, Callable[[Measured], Optional[float]]] = {
+    'terms an event': lambda row: row['terms'],
+    'an event [ns]': lambda row: row['event_ns'],
+    'a term [ns]': lambda row: _ratio(row, 'event_ns', 'terms'),
+    'the look-ups alone [ns]': lambda row: row['lookup_ns'],
+    'ratio': lambda row: _ratio(row, 'event_ns', 'lookup_ns'),
+    "a window's end [ns]": lambda row: row['window_ns']}
+_TRAINING: Dict[str, Callable[[Measured], Optional[float]]] = {
+    'training [events/s]': lambda row: row['train_events_per_s'],
+    'counts [MB]': lambda row: row['train_bytes'] / 1e6,
+    'of twice the time [MB]': lambda row: row['train_bytes_of_twice'] / 1e6,
+    'choosing [ms]': lambda row: row['choose_ms'],
+    'model [MB]': lambda row: row['model_bytes'] / 1e6,
+    'computing it [ms]': lambda row: row['load_ms']}
+
+
+def _table_of(rows: Dict[str, Measured],
+              columns: Dict[str, Callable[[Measured], Optional[float]]]) -> str:
+    """Return a table of the columns that this detector has."""
+    told = {name: column for name, column in columns.items()
+            if any(column(row) is not None for row in rows.values())}
+    return table(('event types', *told), [
+        [size, *(_number(column(row)) for column in told.values())]
+        for size, row in rows.items()])
+
+
 def markdown(measured: Measured) -> str:
     """Return the section's text."""
-    parts = []
-    for detector in DETECTORS:
-        scoring = [[size, _number(row['terms']), _number(row['event_ns']),
-                    _number(row['event_ns'] / row['terms']) if row['terms'] else '–',
-                    _number(row['lookup_ns']), _number(row['event_ns'] / row['lookup_ns']),
-                    _number(row['numpy_ns']), _number(row['window_ns'])]
-                   for size, row in measured[detector].items()]
-        training = [[size, _number(row['train_events_per_s']),
-                     _number(row['train_bytes'] / 1e6), _number(row['train_bytes_of_twice'] / 1e6),
-                     _number(row['choose_ms']), _number(row['model_bytes'] / 1e6),
-                     _number(row['load_ms'])]
-                    for size, row in measured[detector].items()]
-        parts += [f'**`detector: {detector}`**, {measured["date"]}',
-                  table(('event types', 'terms an event', 'an event [ns]', 'a term [ns]',
-                         'the look-ups alone [ns]', 'ratio', 'numpy [ns]', 'a window\'s end [ns]'),
-                        scoring),
-                  table(('event types', 'training [events/s]', 'counts [MB]',
-                         'of twice the time [MB]', 'choosing [ms]', 'model [MB]',
-                         'computing it [ms]'), training)]
-    return '\n\n'.join(parts)
+    return '\n\n'.join(
+        part for detector in DETECTORS for part in (
+            f'**`detector: {detector}`**, {measured["date"]}',
+            _table_of(measured[detector], _SCORING), _table_of(measured[detector], _TRAINING)))
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('raw', type=Path, help='JSON of Google Benchmark')
-    parser.add_argument('numpy', type=Path, help='JSON of numpy_scoring.py')
     parser.add_argument('docs', type=Path, help='folder of performance.md')
     arguments = parser.parse_args()
-    measured = summary(json.loads(arguments.raw.read_text()),
-                       json.loads(arguments.numpy.read_text()))
+    measured = summary(json.loads(arguments.raw.read_text()))
     publish('core', measured, markdown(measured), arguments.docs)
 
 

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import abc
-import os
 import subprocess
 import threading
 import time
@@ -15,10 +14,9 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
 from live_robot import SUBJECT_CORE, pin, record_command
+from programs import built
 from self_awareness.msg import SelfAwareness
 from self_awareness_evaluation.live.processes import Processes, await_condition
-
-_LIBRARIES = Path('lib/self_awareness')
 
 
 class Usage(NamedTuple):
@@ -67,7 +65,7 @@ class Bare(Subject):
     def start(self) -> subprocess.Popen:
         """Start the program."""
         self._process = self._processes.start(
-            'bare', *pin(SUBJECT_CORE, executable('live_bare_subscriber'), *self._topics))
+            'bare', *pin(SUBJECT_CORE, built('live_bare_subscriber'), *self._topics))
         return self._process
 
     def stop(self) -> int:
@@ -125,7 +123,7 @@ class Monitor(Subject):
             self.verdicts = []
             self.level = -1
         self._process = self._processes.start(
-            'monitor', *pin(SUBJECT_CORE, executable('self_awareness_node'),
+            'monitor', *pin(SUBJECT_CORE, built('self_awareness_node'),
                             f'__name:={self.NAME[1:]}', f'_model:={self._model}',
                             '_subscribe:=model',
                             # An alarm of the one before is none of this one's.
@@ -162,12 +160,3 @@ class Monitor(Subject):
             if status.name == f'{self.NAME[1:]}: communication' and status.level != self.level:
                 with self._lock:
                     self.level, self._changed_at = status.level, now
-
-
-def executable(name: str) -> str:
-    """Return the path of a built program of this package."""
-    for prefix in os.environ['CMAKE_PREFIX_PATH'].split(':'):
-        path = Path(prefix) / _LIBRARIES / name
-        if path.exists():
-            return str(path)
-    raise FileNotFoundError(f'{name} is not built; catkin_make live_benchmark')

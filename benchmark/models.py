@@ -2,7 +2,7 @@
 """Benchmark of model files: training, size, and time to load, by the number of event types.
 
 Every number of event types is trained on in a process of its own, whose memory is measured. The
-events are those of numpy_scoring.py: timers of 50 ms to 2 s with chains of two answers each.
+events are those of timers.py: timers of 50 ms to 2 s with chains of two answers each.
 """
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from pathlib import Path
 from typing import Any, Dict, List
 
 import page
-from numpy_scoring import SIZES, events_of
 from self_awareness import EncodingRules, EventType, Recording, TrainedModel, Training, half_of
+from timers import SIZES, events_of
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _SECONDS = 60.0

@@ -14,15 +14,14 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 from typing import Any, Dict, List
 
 import numpy as np
 
-import bags_timers
 import page
-from numpy_scoring import events_of
+import timers
+from programs import run
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _TYPES = 500
@@ -36,23 +35,17 @@ _PROGRAM = 'import sys\nfrom self_awareness.commands.{0} import main\nsys.exit(m
 
 def _write(path: str) -> int:
     """Write the recording, and return the number of its messages."""
-    stamps, ids = events_of(_TYPES, _SECONDS)
+    stamps, ids = timers.events_of(_TYPES, _SECONDS)
     node = ids // 3 == _SILENT_TYPE // 3
     silent = node & (stamps >= 1e9 * _SILENT_S[0]) & (stamps < 1e9 * _SILENT_S[1])
-    bags_timers.write_bag(path, stamps[~silent], ids[~silent])
+    timers.write_bag(path, stamps[~silent], ids[~silent])
     return int(np.count_nonzero(~silent))
 
 
 def _run(program: str, *arguments: str) -> Dict[str, float]:
     """Run a program; return its time and the most memory that it had."""
-    before = time.monotonic()
-    process = subprocess.Popen((sys.executable, '-B', '-c', _PROGRAM.format(program), *arguments),
-                               stdout=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = status
-    if status != 0:
-        raise RuntimeError(f'{program} failed')
-    return {'wall_s': time.monotonic() - before, 'peak_bytes': 1024 * usage.ru_maxrss}
+    used = run((sys.executable, '-B', '-c', _PROGRAM.format(program), *arguments))
+    return {'wall_s': used.wall_s, 'peak_bytes': used.peak_bytes}
 
 
 def _loaded_s(path: str) -> float:
@@ -99,10 +92,10 @@ def markdown(result: Dict[str, Any]) -> str:
     """Return the table."""
     def median(*keys: str) -> float:
         values = []
-        for run in result['measured']:
+        for value in result['measured']:
             for key in keys:
-                run = run[key]
-            values.append(run)
+                value = value[key]
+            values.append(value)
         return statistics.median(values)
 
     rows = [

@@ -1,18 +1,13 @@
-// Measures the evidence detector: taking in an event, compared with the bare look-ups; closing a
-// window; training; size in memory.
+// Measures the evidence detector: taking in an event, closing a window; training; size in memory.
 
 #include <benchmark/benchmark.h>
 
 #include <array>
 #include <map>
 #include <memory>
-#include <random>
-#include <string>
-#include <vector>
 
 #include "allocated_bytes.h"
 #include "core/evidence/channel/scorer.h"
-#include "core/evidence/count/log_bins.h"
 #include "event_loop.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/count/statistics.h"
@@ -67,34 +62,10 @@ const Trained& trained(std::size_t types) {
   return entry;
 }
 
-// Event types since whose last event the scorer looks at the delay, by the type of the event.
-using Terms = std::vector<std::vector<core::EventId>>;
-
-Terms termsOf(const evidence::Model& model) {
-  Terms terms(model.size());
-  for (const evidence::Track& track : model.tracks()) {
-    const std::string channel = evidence::channelName(track);
-    if (channel == "own gaps" || channel == "pairs") {
-      terms[track.to].push_back(track.from);
-    }
-  }
-  return terms;
-}
-
-// Mean number of terms of an event, over the events of a round.
-double termsPerEvent(const Terms& terms, EventLoop& events) {
-  std::size_t number = 0;
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    number += terms[events.next().id].size();
-  }
-  return static_cast<double>(number) / static_cast<double>(events.size());
-}
-
 void scoreEvidence(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));
   const Trained& entry = trained(types);
   EventLoop events = loopOfEvents(types);
-  state.counters["terms"] = termsPerEvent(termsOf(*entry.model), events);
   evidence::Scorer scorer(entry.model, kWindow);
   for (std::size_t i = 0; i < events.size(); ++i) {
     scorer.add(events.next());  // after this, all types have been seen
@@ -104,50 +75,6 @@ void scoreEvidence(benchmark::State& state) {
   }
 }
 BENCHMARK(scoreEvidence)->ArgsProduct({kSizes});
-
-// Looks up what the terms of an event need, and does nothing else: when the other event came, the
-// sums of the pair, and how surprising a delay is.
-void lookUpEvidence(benchmark::State& state) {
-  struct Seen {
-    double stamp = 1;
-    double number = 1;
-  };
-  struct Pair {
-    std::array<double, 6> cells{1};
-  };
-  struct Term {
-    core::EventId other;
-    std::uint32_t number;
-    std::uint32_t bin;
-  };
-  const auto types = static_cast<std::size_t>(state.range(0));
-  const Terms terms = termsOf(*trained(types).model);
-  EventLoop events = loopOfEvents(types);
-  state.counters["terms"] = termsPerEvent(terms, events);
-  std::mt19937 random(1);
-  std::vector<std::vector<Term>> delays(types);
-  std::size_t pairs = 0;
-  for (core::EventId id = 0; id < types; ++id) {
-    for (const core::EventId from : terms[id]) {
-      // Most delays of a pair are in a few bins.
-      delays[id].push_back({from, static_cast<std::uint32_t>(pairs++),
-                            static_cast<std::uint32_t>(random() % evidence::log_bins::kBins)});
-    }
-  }
-  const std::vector<Seen> seen(types);
-  const std::vector<Pair> of_pairs(pairs);
-  const std::vector<std::array<double, evidence::log_bins::kBins>> surprises(pairs);
-  double sum = 0;
-  for (auto _ : state) {
-    const core::EventId id = events.next().id;
-    for (const Term& term : delays[id]) {
-      sum += seen[term.other].stamp + of_pairs[term.number].cells[0] +
-             surprises[term.number][term.bin];
-    }
-  }
-  benchmark::DoNotOptimize(sum);
-}
-BENCHMARK(lookUpEvidence)->ArgsProduct({kSizes});
 
 void closeWindowEvidence(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));

@@ -1,4 +1,4 @@
-"""Writes bags of a robot with many event types, parts of one recording: much to count."""
+"""The system that most benchmarks measure: timers, each with a chain of two answers."""
 from __future__ import annotations
 
 import os
@@ -9,9 +9,27 @@ import numpy as np
 import rosbag
 from std_msgs.msg import Empty
 
-from numpy_scoring import events_of
-
+SIZES = (15, 60, 150, 300, 1000)
+"""Numbers of event types that are measured."""
 _START_NS = 1_600_000_000_000_000_000
+
+
+def events_of(types: int, duration: float) -> Tuple[np.ndarray, np.ndarray]:
+    """Return stamps [ns] and ids of timers of 50 ms to 2 s with chains of two answers each."""
+    random = np.random.default_rng(1)
+    stamps, ids = [], []
+    for timer in range(0, types, 3):
+        period = 0.05 * 40.0 ** random.random()
+        times = 2.0 * random.random() + np.cumsum(
+            period * random.normal(1.0, 0.05, int(duration / period)))
+        for kind in range(timer, min(timer + 3, types)):
+            stamps.append(times)
+            ids.append(np.full(len(times), kind))
+            delay = 0.002 + 0.038 * random.random()
+            times = times + delay * random.normal(1.0, 0.05, len(times))
+    order = np.argsort(np.concatenate(stamps), kind='stable')
+    return ((np.concatenate(stamps)[order] * 1e9).astype(np.int64),
+            np.concatenate(ids)[order].astype(np.uint32))
 
 
 def write(folder: str, number: int, types: int, seconds: float) -> Tuple[List[str], int]:
