@@ -149,11 +149,10 @@ void Monitor::onClockSet(std::int64_t /*now*/) {
   }
 }
 
-void Monitor::onPause(std::int64_t now, std::int64_t pause) {
+void Monitor::onPause(std::int64_t pause) {
   if (session_) {
     reports_.onPause(pause);
     notNormal("this program stood still");
-    session_->detector().onPause(now);
   }
 }
 

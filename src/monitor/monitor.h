@@ -149,7 +149,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   void onEvent(const core::Event& event) override;
   void onContent(core::EventId id, const ros1::Content& content) override;
   void onClockSet(std::int64_t now) override;
-  void onPause(std::int64_t now, std::int64_t pause) override;
+  void onPause(std::int64_t pause) override;
   void onWaiting(const core::Waiting& waiting) override;
   void onDropped(const ros1::Publication& publication) override;
   void onGraph(const ros1::Graph& graph) override;

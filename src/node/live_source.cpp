@@ -75,14 +75,17 @@ void LiveSource::onTick(const ros::SteadyTimerEvent& /*tick*/) {
     }
     listener_.onGraph(*graph_);
   }
-  // Before windows are judged that end now.
-  if (const auto waiting = processor_watch_.look(now, steadyNow(), tick_.toNSec())) {
-    listener_.onWaiting(*waiting);
-  }
+  tellWaiting(now);  // before windows are judged that end now
   listener_.onTick(now);
   if (core::toSeconds(steadyNow() - reported_at_) >= period_) {
     live_events_.forgetClosedConnections();
     report();
+  }
+}
+
+void LiveSource::tellWaiting(std::int64_t now) {
+  if (const auto waiting = processor_watch_.look(now, steadyNow(), tick_.toNSec())) {
+    listener_.onWaiting(*waiting);
   }
 }
 
@@ -100,7 +103,8 @@ std::int64_t LiveSource::watchClock() {
     processor_watch_.restart();
     listener_.onClockSet(now);
   } else if (clock_watch_.pause() > core::Waiting::kStoodStill + tick_.toNSec()) {
-    listener_.onPause(now, clock_watch_.pause());
+    listener_.onPause(clock_watch_.pause());
+    tellWaiting(now);
   }
   return now;
 }

@@ -56,10 +56,10 @@ class LiveSource {
     virtual void onTick(std::int64_t now) = 0;
     /// It is time to report, after each period of steady time or by report().
     virtual void onReport() = 0;
-    /// This program stood still: what came meanwhile was received late, or never.
-    /// @param now ROS time [ns]
+    /// This program stood still: what came meanwhile was received late, or never. onWaiting()
+    /// follows, before what was received.
     /// @param pause [ns of steady time]
-    virtual void onPause(std::int64_t /*now*/, std::int64_t /*pause*/) {}
+    virtual void onPause(std::int64_t /*pause*/) {}
     /// How the machine was in the stretch of time after the one before.
     virtual void onWaiting(const core::Waiting& /*waiting*/) {}
     /// Messages of this publisher were dropped.
@@ -116,6 +116,8 @@ class LiveSource {
  private:
   ros1::LiveEvents::Handlers handlers();
   void onTick(const ros::SteadyTimerEvent& tick);
+  /// Tells how the machine was up to now [ns], if there is something to tell.
+  void tellWaiting(std::int64_t now);
   /// Tells if ROS time was set, or this program stood still. Returns the ROS time [ns] that it
   /// looked at: by another look, the clock may have been set again.
   std::int64_t watchClock();

@@ -63,6 +63,7 @@ class Judge : public core::Judge {
   }
   std::vector<Disarmed> disarmed() const override;
   void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
+  void standStill(const Waiting& pause, std::int64_t until) override;
   void accept(const Acceptances& accepted) override {
     excused_.accept(accepted);
     unsubscribed_.accept(accepted);
@@ -87,7 +88,8 @@ class Judge : public core::Judge {
   /// Forgets what the sums say of event types that have settled since the window before.
   /// @param now start of the window [ns]
   void forgetStarts(std::int64_t now);
-  /// Takes back what the tracks say of event types that settle.
+  /// Takes back what the tracks say of event types that settle, and, after this program stood
+  /// still, all but who is silent.
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
   /// Finds the shares of a window by the evidence, without what is not judged now.
   void weigh(const Window& window, std::int64_t end, std::vector<double>& evidence);
@@ -127,6 +129,8 @@ class Judge : public core::Judge {
   std::int64_t last_window_ = 0;          // its start [ns]
   std::vector<std::int64_t> settled_at_;  // [ns], by id
   std::int64_t all_settled_at_ = std::numeric_limits<std::int64_t>::min();  // the latest of them
+  std::int64_t resumed_at_ =
+      std::numeric_limits<std::int64_t>::min();  // all settled after a pause
 };
 
 Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
@@ -180,6 +184,14 @@ void Judge::settleUntil(EventId id, std::int64_t until) {
   }
 }
 
+void Judge::standStill(const Waiting& pause, std::int64_t until) {
+  scorer_.hear(pause);
+  never_heard_.leaveOut(pause.waited);
+  resumed_at_ = std::max(resumed_at_, until);
+  all_settled_at_ = std::max(all_settled_at_, until);
+  settling_ = true;
+}
+
 void Judge::restart() {
   scorer_.restart();
   events_.restart();
@@ -191,7 +203,7 @@ void Judge::restart() {
   settling_ = false;
   last_window_ = 0;
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
-  all_settled_at_ = std::numeric_limits<std::int64_t>::min();
+  all_settled_at_ = resumed_at_ = std::numeric_limits<std::int64_t>::min();
 }
 
 void Judge::leaveOutFewer(std::vector<double>& evidence) const {
@@ -204,7 +216,8 @@ void Judge::leaveOutFewer(std::vector<double>& evidence) const {
 
 void Judge::forgetStarts(std::int64_t now) {
   for (EventId id = 0; settling_ && id < settled_at_.size(); ++id) {
-    if (last_window_ < settled_at_[id] && settled_at_[id] <= now) {
+    const std::int64_t settled_at = std::max(settled_at_[id], resumed_at_);
+    if (last_window_ < settled_at && settled_at <= now) {
       scorer_.forget(id);
     }
   }
@@ -218,8 +231,10 @@ void Judge::leaveOutNew(std::int64_t now, std::vector<double>& evidence) const {
   }
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     const Track& watched = model_->tracks()[track];
-    if (now - watched.channel->looksBack() <
-        std::max(settled_at_[watched.to], settled_at_[watched.from])) {
+    const std::int64_t since = now - watched.channel->looksBack();
+    // Silence is counted without the pause: who sends is heard again before it is unusual.
+    if (since < std::max(settled_at_[watched.to], settled_at_[watched.from]) ||
+        (since < resumed_at_ && watched.channel->finding() != Finding::kSilent)) {
       evidence[track] = 0;
     }
   }

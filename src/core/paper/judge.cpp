@@ -62,6 +62,11 @@ class Judge : public core::Judge {
     }
   }
 
+  // One score for all does not tell who was silent before.
+  void standStill(const Waiting& /*pause*/, std::int64_t until) override {
+    settled_at_ = std::max(settled_at_.value_or(until), until);
+  }
+
   Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override {
     Judgement judgement;
     judgement.settling = settled_at_ && window.start < *settled_at_;

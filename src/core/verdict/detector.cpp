@@ -67,18 +67,17 @@ void Detector::accept(const Acceptances& accepted) {
 }
 
 void Detector::hear(const Waiting& waiting) {
-  judge_->hear(waiting);
-  if (waiting.stoodStill()) {
-    onPause(waiting.to);
+  if (!waiting.stoodStill()) {
+    judge_->hear(waiting);
+    return;
   }
+  const std::int64_t until = waiting.to + std::max(parameters_.settle_time, kBacklog);
+  judge_->standStill(waiting, until);
+  resumed_at_ = std::max(resumed_at_, until);
 }
 
 void Detector::onMissed(const std::vector<EventId>& ids, std::int64_t now) {
   judge_->leaveOut(ids, now + std::max(parameters_.settle_time, kBacklog));
-}
-
-void Detector::onPause(std::int64_t now) {
-  settled_at_ = std::max(settled_at_, now + std::max(parameters_.settle_time, kBacklog));
 }
 
 void Detector::advance(std::int64_t now) {
@@ -201,8 +200,9 @@ void Detector::close(const Window& window, std::int64_t end) {
   verdict.threshold = judgement.threshold;
   verdict.abnormal = judgement.abnormal;
   const bool stood = persistence_.raised();
-  // What is new raises no alarm, but one that stands goes on as long as its cause does.
-  verdict.settling = starting || (judgement.settling && !stood);
+  // What is new raises no alarm, but one that stands goes on as long as its cause does; after a
+  // pause, which hides that, for a while.
+  verdict.settling = starting || (stood ? window.start < resumed_at_ : judgement.settling);
   const bool was_suspicion = suspicion_;
   if (verdict.settling) {
     verdict.alarm = persistence_.leaveOut(windows_.length());

@@ -397,6 +397,31 @@ TEST_F(EvidenceJudgeTest, WhatWasMissedIsNotJudgedAndAllElseIs) {
       judge->judge({now + 2 * kSecond, {}}, now + 3 * kSecond, NameSuspects::kNever).abnormal);
 }
 
+TEST_F(EvidenceJudgeTest, WhoWasSilentBeforeThisProgramStoodStillIsSilentStill) {
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limits_.tracks[track(kPairs, kB, kA)] = 1;
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  feed(*judge, 5);
+  const std::int64_t last = 44 * kPeriod;  // of A, which dies
+  const std::int64_t resumed = last + 10 * kSecond;
+  const std::int64_t settled = resumed + 3 * kSecond;
+  const auto judgeTo = [&](std::int64_t end) {
+    return judge->judge({end - kWindow, {}}, end, NameSuspects::kIfUnusual);
+  };
+  EXPECT_EQ(judgeTo(last + kWindow).evidence, "pairs");
+  judge->standStill({last + kWindow, resumed, resumed - last - kWindow}, settled);
+  judge->add({last + 80 * kMillisecond, kB});  // waited in a queue
+  EXPECT_FALSE(judgeTo(last + 5 * kSecond).abnormal) << "a window in which nobody listened";
+  judge->add({resumed, kB});
+  EXPECT_FALSE(judgeTo(resumed + 800 * kMillisecond).abnormal) << "what else was unusual settles";
+  const Judgement found = judgeTo(resumed + kSecond);
+  EXPECT_TRUE(found.abnormal);
+  EXPECT_EQ(found.evidence, "overdue");
+  ASSERT_FALSE(found.suspects.empty());
+  EXPECT_EQ(found.suspects.front().id, kA);
+  EXPECT_GT(found.suspects.front().reason.value, 10) << "for so long it was not heard";
+}
+
 TEST_F(EvidenceJudgeTest, AfterARestartNothingSettlesThatDidBefore) {
   limits_.tracks[track(kOverdue, kA, kA)] = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);

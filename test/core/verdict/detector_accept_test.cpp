@@ -28,6 +28,7 @@ class QuietJudge : public Judge {
   }
   void settle(const Event& /*first*/, std::int64_t /*settle_time*/) override {}
   void leaveOut(const std::vector<EventId>& /*ids*/, std::int64_t /*until*/) override {}
+  void standStill(const Waiting& /*pause*/, std::int64_t /*until*/) override {}
   void accept(const Acceptances& accepted) override { accepted_ = accepted; }
   bool isAccepted(EventId id, Kind kind) const override {
     return accepted_.covers(kTypes[id].source, kTypes[id].scope, kind);

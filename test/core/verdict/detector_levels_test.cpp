@@ -32,8 +32,10 @@ class ToldJudge : public Judge {
       settling_[id] = until;
     }
   }
-  Judgement judge(const Window& /*window*/, std::int64_t /*end*/, NameSuspects suspects) override {
+  void standStill(const Waiting& /*pause*/, std::int64_t until) override { settled_at_ = until; }
+  Judgement judge(const Window& window, std::int64_t /*end*/, NameSuspects suspects) override {
     Judgement judgement = *told_;
+    judgement.settling = window.start < settled_at_;
     if (suspects == NameSuspects::kAlways ||
         (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
       if (judgement.suspects.empty()) {
@@ -49,6 +51,7 @@ class ToldJudge : public Judge {
 
  private:
   std::map<EventId, std::int64_t> settling_;
+  std::int64_t settled_at_ = 0;
   std::shared_ptr<Judgement> told_;
 };
 
@@ -150,19 +153,7 @@ TEST_F(DetectorLevelsTest, AllWhoFallSilentAreToldAtOnce) {
   EXPECT_TRUE(verdict_.silent);
 }
 
-TEST_F(DetectorLevelsTest, AfterAPauseNothingIsSaidUntilAllHasSettled) {
-  start();
-  detector_->onPause(now_ + 2 * kSecond);
-  detector_->advance(now_ += 2 * kSecond);
-  for (int i = 0; i < 30; ++i) {
-    abnormalWindow();
-    EXPECT_TRUE(verdict_.settling);
-    EXPECT_FALSE(verdict_.suspicion || verdict_.alarm);
-  }
-  EXPECT_FALSE(window().settling);
-}
-
-TEST_F(DetectorLevelsTest, WhoMeasuredAndStoodStillItselfSaysNothing) {
+TEST_F(DetectorLevelsTest, AfterAPauseTheJudgeSaysWhatHasSettled) {
   start();
   const std::int64_t begin = now_;
   detector_->hear({begin, begin + kSecond, Waiting::kStoodStill});
@@ -179,7 +170,7 @@ TEST_F(DetectorLevelsTest, WhoMeasuredAndStoodStillItselfSaysNothing) {
 TEST_F(DetectorLevelsTest, AnAlarmThatStandsOutlastsAPause) {
   start();
   EXPECT_TRUE(alarmWindow({suspect("/a", 0)}).alarm);
-  detector_->onPause(now_);
+  detector_->hear({now_ - kSecond, now_, kSecond});
   windows(30);
   EXPECT_TRUE(verdict_.alarm);
   EXPECT_EQ(changes_, 1);

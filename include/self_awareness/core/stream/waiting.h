@@ -14,8 +14,9 @@ struct Waiting {
   std::int64_t to = 0;      ///< its end [ns]
   std::int64_t waited = 0;  ///< [ns], at most its length
 
-  /// Whether the program that measured it stood still itself for so long that it says nothing of
-  /// others. Who looks all the time has told a stretch long before so much of it was waited.
+  /// Whether the program that measured it stood still itself for as long as was waited, and says
+  /// nothing of others. Who looks all the time has told a stretch long before so much of it was
+  /// waited.
   bool stoodStill() const { return waited > kStoodStill; }
   static constexpr std::int64_t kStoodStill = kNanosecondsPerSecond / 2;  // [ns]
 };

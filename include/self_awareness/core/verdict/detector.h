@@ -74,7 +74,9 @@ class Detector : private WindowObserver {
   /// @return false if the clock was set
   bool add(const Event& event);
   /// Takes note of how the machine was in a stretch of time, one after the other; at the latest
-  /// before a window is judged that ends after its begin. Who measured it may have stood still.
+  /// before a window is judged that ends after its begin. If who measured it stood still itself,
+  /// and heard nothing, all but silence settles as at the start, for 3 s at least, and an alarm
+  /// that stands goes on meanwhile.
   void hear(const Waiting& waiting);
   /// Takes note of who may be absent. What is unusual of them while they are there is judged.
   /// @param patterns names of components or topics, or their begins and a `*`
@@ -91,9 +93,6 @@ class Detector : private WindowObserver {
   /// Takes note that this program was too slow, and has missed events of these types up to the
   /// time `now` [ns]: they settle as if they were new, for 3 s at least.
   void onMissed(const std::vector<EventId>& ids, std::int64_t now);
-  /// Takes note that this program stood still up to the time `now` [ns], and heard nothing: all
-  /// settle as at the start, for 3 s at least, and an alarm that stands goes on meanwhile.
-  void onPause(std::int64_t now);
   /// Judges the windows that are over at the time `now` [ns], whether events came or not.
   void advance(std::int64_t now);
   /// Ends the recording and judges the open window.
@@ -169,6 +168,7 @@ class Detector : private WindowObserver {
   bool suspicion_ = false;              // whether it stands
   std::int64_t suspicious_at_ = 0;      // end of the last suspicious window [ns], while it stands
   std::int64_t settled_at_ = 0;         // [ns], valid once started
+  std::int64_t resumed_at_ = 0;         // all has settled since this program stood still [ns]
   std::vector<bool> heard_;             // since the start, by id
   std::map<EventId, Unknown> unknown_;
   // When the alarm or the suspicion that stands named a component, or an event type whose

@@ -73,6 +73,10 @@ class Judge {
   virtual std::optional<LastingMode> mode(std::int64_t /*now*/) const { return std::nullopt; }
   /// What the judge does not watch now, though it did, or will. Who judges all the time has none.
   virtual std::vector<Disarmed> disarmed() const { return {}; }
+  /// Takes note that this program stood still: what came meanwhile was received late, or never.
+  /// What is unusual up to `until` [ns] says nothing; who was silent before is silent still.
+  /// @param pause told in place of hear()
+  virtual void standStill(const Waiting& pause, std::int64_t until) = 0;
   /// Takes note of how the machine was in a stretch of time, one after the other. Who does not
   /// judge by time has no use for it.
   virtual void hear(const Waiting& /*waiting*/) {}

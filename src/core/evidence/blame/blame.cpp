@@ -235,7 +235,7 @@ bool Blame::isUsualAge(std::size_t track, const std::vector<double>& shares,
 }
 
 double Blame::logSurvival(EventId id, const Scorer& scorer) const {
-  return model_->logSurvival(id, scorer.heard().silence(id));
+  return model_->logSurvival(id, scorer.heard().listenedFor(id));
 }
 
 bool Blame::isUsual(const Suspect& suspect) const {

@@ -95,12 +95,13 @@ void NeverHeard::restart() {
   missing_.clear();
   heard_.assign(heard_.size(), false);
   start_.reset();
+  paused_ = 0;
   share_ = 0;
 }
 
 void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
   end_ = end;
-  const std::int64_t passed = end - start_.value_or(end);
+  const std::int64_t passed = end - start_.value_or(end) - paused_;
   const auto first_due = std::stable_partition(
       waiting_.begin(), waiting_.end(),
       [&](const Expected& expected) { return passed <= expected.due(settle_time); });

@@ -28,6 +28,8 @@ class NeverHeard {
   void excuse(std::vector<bool> may_be_silent) { may_be_silent_ = std::move(may_be_silent); }
   /// Whether event types come after every start, by id of the model.
   std::vector<bool> expected() const;
+  /// Leaves out that this program stood still for so long [ns].
+  void leaveOut(std::int64_t pause) { paused_ += pause; }
   /// Forgets what was heard: the next event is the start.
   void restart();
   /// Looks at what is missing at the end of a window.
@@ -84,7 +86,8 @@ class NeverHeard {
   std::vector<Expected> missing_;          // those that are due, sources upstream of others first
   std::vector<bool> may_be_silent_;        // by id
   std::optional<std::int64_t> start_;
-  std::int64_t end_ = 0;  // of the last window [ns]
+  std::int64_t paused_ = 0;  // since then [ns]
+  std::int64_t end_ = 0;     // of the last window [ns]
   double share_ = 0;
 };
 

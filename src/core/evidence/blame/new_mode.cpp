@@ -172,7 +172,7 @@ std::vector<EventId> NewMode::silent(const std::vector<double>& shares, const Li
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
     const EventId id = model_->tracks()[track].to;
     if (model_->finding(track) == Finding::kSilent && !std::isnan(limits.tracks[track]) &&
-        !owes[id] && heard.hasSeen(id) && model_->logSurvival(id, heard.silence(id)) < rare) {
+        !owes[id] && heard.hasSeen(id) && model_->logSurvival(id, heard.listenedFor(id)) < rare) {
       silent.push_back(id);
     }
   }

@@ -92,7 +92,7 @@ std::vector<SilentTogether::Component> SilentTogether::look(const std::vector<do
   for (EventId id = 0; id < model_->size(); ++id) {
     if (scorer.heard().hasSeen(id)) {
       Component& component = components[model_->componentIndex(id)];
-      const std::int64_t silence = scorer.heard().silence(id);
+      const std::int64_t silence = scorer.heard().listenedFor(id);
       component.silence = component.seen ? std::min(component.silence, silence) : silence;
       component.seen = true;
     }

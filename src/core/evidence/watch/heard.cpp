@@ -10,7 +10,20 @@ Heard::Heard(std::size_t types, std::int64_t window, Stalls stalls, const Tuning
       longest_stall_(toNanoseconds(tuning.longest_stall)),
       stamps_(types, 0),
       first_stamps_(types, 0),
-      numbers_(types, 0) {}
+      numbers_(types, 0),
+      paused_before_(types, 0) {}
+
+void Heard::hear(const Waiting& waiting) {
+  if (number_ == 0 || waiting.from < start_) {
+    return;  // what was before is in no recording of events
+  }
+  if (waiting.stoodStill()) {
+    pause_ = {waiting.to - waiting.waited, pause_.all, pause_.all + waiting.waited};
+    stalls_.passTo(waiting.to);
+  } else {
+    starvation_.add(waiting);
+  }
+}
 
 void Heard::restart() {
   counts_.restart();
@@ -20,6 +33,8 @@ void Heard::restart() {
   stamps_.assign(stamps_.size(), 0);
   first_stamps_.assign(stamps_.size(), 0);
   numbers_.assign(stamps_.size(), 0);
+  paused_before_.assign(stamps_.size(), 0);
+  pause_ = {};
   number_ = 0;
   rates_valid_ = false;
 }

@@ -43,11 +43,7 @@ class Heard {
     mode_.restart();
   }
   /// Takes in how the machine was in the stretch of time after the one before.
-  void hear(const Waiting& waiting) {
-    if (number_ > 0 && waiting.from >= start_) {  // what was before is in no recording of events
-      starvation_.add(waiting);
-    }
-  }
+  void hear(const Waiting& waiting);
   /// Begins to take in an event; the channels see it before end() does.
   Arrival begin(const Event& event) {
     counts_.add(event.id);
@@ -65,6 +61,7 @@ class Heard {
       first_stamps_[arrival.id] = arrival.stamp;
     }
     stamps_[arrival.id] = arrival.stamp;
+    paused_before_[arrival.id] = arrival.stamp < pause_.from ? pause_.before : pause_.all;
     numbers_[arrival.id] = ++number_;
   }
   /// A mode of the robot is told (stream/mode.h), whether the model knows it or not.
@@ -99,10 +96,15 @@ class Heard {
   std::int64_t lasted(EventId mode, std::int64_t stamp) const { return mode_.lasted(mode, stamp); }
   /// Time since the last event of a type, at the end of the last window [ns]; 0 before the first.
   std::int64_t silence(EventId id) const { return hasSeen(id) ? window_end_ - stamps_[id] : 0; }
+  /// The same without the time in which this program stood still, and heard nobody.
+  std::int64_t listenedFor(EventId id) const {
+    return std::max<std::int64_t>(silence(id) - (pause_.all - paused_before_[id]), 0);
+  }
   /// The same without the time in which the whole robot stood still, or its machine was starved:
   /// then nobody's silence grows.
   std::int64_t age(EventId id) const {
-    return hasSeen(id) ? silence(id) - stoodStillSince(stamps_[id]) : 0;
+    return hasSeen(id) ? std::max<std::int64_t>(listenedFor(id) - stoodStillSince(stamps_[id]), 0)
+                       : 0;
   }
   /// How long the whole robot stood still, or its machine was starved, since a stamp [ns], at the
   /// end of the last window.
@@ -132,6 +134,13 @@ class Heard {
   std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
 
  private:
+  /// How long this program stood still.
+  struct Pause {
+    std::int64_t from = 0;    // begin of the last time [ns]
+    std::int64_t before = 0;  // all before that [ns]
+    std::int64_t all = 0;     // [ns]
+  };
+
   void note(std::int64_t stamp) {
     if (number_ == 0) {
       start_ = stamp;
@@ -145,11 +154,13 @@ class Heard {
   Stalls stalls_;
   Starvation starvation_;
   ModeTime mode_;
-  std::int64_t longest_stall_;              // that is forgiven [ns]
-  std::int64_t start_ = 0;                  // [ns], once there was an event
-  std::vector<std::int64_t> stamps_;        // of the last event [ns], by id
-  std::vector<std::int64_t> first_stamps_;  // of the first event since the start [ns], by id
-  std::vector<std::uint64_t> numbers_;      // of the last event in the recording, by id; 0: none
+  std::int64_t longest_stall_;               // that is forgiven [ns]
+  std::int64_t start_ = 0;                   // [ns], once there was an event
+  std::vector<std::int64_t> stamps_;         // of the last event [ns], by id
+  std::vector<std::int64_t> first_stamps_;   // of the first event since the start [ns], by id
+  std::vector<std::uint64_t> numbers_;       // of the last event in the recording, by id; 0: none
+  std::vector<std::int64_t> paused_before_;  // of the pauses, those before the last event, by id
+  Pause pause_;
   std::uint64_t number_ = 0;
   std::int64_t window_end_ = 0;  // [ns]
   bool rates_valid_ = false;     // at the end of the last window

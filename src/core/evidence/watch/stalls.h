@@ -27,6 +27,8 @@ class Stalls {
     }
     last_stamp_ = stamp > last_stamp_ ? stamp : last_stamp_;
   }
+  /// This program stood still up to a stamp [ns]: that it heard nothing says nothing of the robot.
+  void passTo(std::int64_t stamp) { last_stamp_ = stamp > last_stamp_ ? stamp : last_stamp_; }
   /// Whether an event of now [ns] may have waited for the end of a stall.
   bool holdsBack(std::int64_t stamp) const { return stamp < until_; }
   /// Whether a stall ended with an event of now [ns].

@@ -31,6 +31,14 @@ TEST_F(StallsTest, ASilenceOfAllThatIsLongerThanUsualIsOne) {
   EXPECT_TRUE(stalls_.holdsBack(stall(51 * kMillisecond, kStart + kSecond)));
 }
 
+TEST_F(StallsTest, WhileThisProgramStoodStillTheRobotDidNot) {
+  stalls_.passTo(kStart + 300 * kMillisecond);
+  stalls_.add(kStart + 300 * kMillisecond, true);
+  EXPECT_FALSE(stalls_.holdsBack(kStart + 300 * kMillisecond));
+  stalls_.passTo(kStart);  // it is later already
+  EXPECT_TRUE(stalls_.holdsBack(stall(51 * kMillisecond, kStart + kSecond)));
+}
+
 TEST_F(StallsTest, WhatWaitedHasComeAfterAsLongAsItLasted) {
   const std::int64_t end = stall(300 * kMillisecond);
   EXPECT_TRUE(stalls_.holdsBack(end + 299 * kMillisecond));
