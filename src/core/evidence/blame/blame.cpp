@@ -39,7 +39,7 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
   const auto add = [&](const Candidate& candidate) {
     Suspect suspect = suspectOf(candidate.track, scorer, events);
     suspect.component = model_->component(suspect.id);
-    suspect.abnormal = shares[candidate.track] > 1;
+    suspect.abnormal = candidate.abnormal;
     if (!suspect.abnormal && isUsual(suspect)) {
       return;
     }
@@ -57,7 +57,7 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
   }
   addUnknown(window, suspects);
   for (const Candidate& candidate : candidates) {
-    if (shares[candidate.track] > 1 && components.count(model_->component(toOf(candidate))) == 0) {
+    if (candidate.abnormal && components.count(model_->component(toOf(candidate))) == 0) {
       add(candidate);
     }
   }
@@ -77,7 +77,8 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
   }
   std::vector<Candidate> candidates;
   const auto add = [&](EventId id, std::size_t track) {
-    candidates.push_back({track, std::min(logSurvival(id, scorer), rare_silence_)});
+    candidates.push_back(
+        {track, std::min(logSurvival(id, scorer), rare_silence_), false, shares[track] > 1});
   };
   for (const auto& [id, track] : missing) {
     if (!isUsualAge(track, shares, scorer)) {
@@ -173,15 +174,21 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
     bool late = false;  // comes later after another one
   };
   std::map<std::string, Involved> components;
-  std::vector<std::size_t> late;  // tracks
+  std::map<EventId, std::size_t> lossy;  // tracks
+  std::vector<std::size_t> late;         // the same
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const EventId to = model_->tracks()[track].to;
     const EventId from = model_->tracks()[track].from;
     const Finding finding = model_->finding(track);
     if (shares[track] < tuning_.least_share ||
-        // An age that is usual has some share of its limit, too.
-        (finding == Finding::kSilent && isUsualAge(track, shares, scorer))) {
+        // An age that is usual has some share of its limit, too, and so has a request of now.
+        (finding == Finding::kSilent && isUsualAge(track, shares, scorer)) ||
+        (finding != Finding::kSilent && isAbsence(finding) &&
+         shares[track] <= tuning_.near_limit)) {
       continue;
+    }
+    if (model_->tracks()[track].channel->kind() == Kind::kLossy) {
+      lossy.emplace(to, track);
     }
     const double share = std::min(shares[track], tuning_.most_share);
     const bool other =
@@ -214,10 +221,13 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
   std::array<std::vector<Candidate>, 3> groups;
   for (const auto& [name, involved] : components) {
     if (involved.largest > 0) {
+      // What is lost makes gaps irregular, and not the other way round.
+      const auto lost = lossy.find(model_->tracks()[involved.track].to);
       groups[involved.own    ? 0
              : involved.late ? 1
                              : 2]
-          .push_back({involved.track, -involved.sum, involved.own});
+          .push_back({lost == lossy.end() ? involved.track : lost->second, -involved.sum,
+                      involved.own, involved.largest > 1});
     }
   }
   std::vector<Candidate> ordered;

@@ -34,6 +34,7 @@ class Blame {
     std::size_t track = 0;  // that speaks against its `to`
     double rank = 0;        // the smaller, the more likely
     bool own = false;       // something is wrong with it, whatever the others do
+    bool abnormal = false;  // that alone is beyond a limit
   };
 
   static bool likelier(const Candidate& a, const Candidate& b) { return a.rank < b.rank; }

@@ -15,6 +15,8 @@ constexpr double kMostOthers = 0.01;
 constexpr double kFewestNumbers = 300;
 // Twice what training lost is as usual as once.
 constexpr double kTimesUsual = 2;
+// A run without a loss is so improbable [nats], if losses go on as they were: they are over.
+constexpr double kOver = 5;
 // Losses so close together are chance where they come more often than that in an hour.
 constexpr double kByChance = 0.001;
 constexpr int kIterations = 50;   // far more than it takes
@@ -69,7 +71,9 @@ struct NumbersOfMessages {
     }
     losses += loss ? 1 : 0;
     ++messages;
-    sum = std::clamp(sum + (loss ? 1 : 0) - usual.drift, 0.0, most);
+    since_loss = loss ? 0 : since_loss + 1;
+    const bool over = static_cast<double>(losses) * since_loss > kOver * messages;
+    sum = over ? 0 : std::clamp(sum + (loss ? 1 : 0) - usual.drift, 0.0, most);
   }
   double evidence() const { return sum; }
   void explain(const Usual& usual, Reason& reason) const {
@@ -89,6 +93,7 @@ struct NumbersOfMessages {
   double sum = 0;
   std::uint32_t losses = 0;    // since the sum was 0
   std::uint32_t messages = 0;  // the same
+  std::uint32_t since_loss = 0;
 };
 
 }  // namespace
