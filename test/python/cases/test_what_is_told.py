@@ -1,7 +1,13 @@
 """Whom an alarm names, when it ends, and the sentence for it, by the cases of ../shared/cases."""
 from __future__ import annotations
 
+import json
+import os
+import subprocess
+import sys
 from pathlib import Path
+
+from self_awareness.commands import calibrate, score, train
 
 
 def test_who_has_a_request_outstanding_is_no_suspect(cases, scored, tmp_path: Path) -> None:
@@ -32,3 +38,20 @@ def test_a_node_that_is_started_again_and_again_is_one_incident(cases, scored, c
     assert recording['incidents'][0]['headline'] == (
         '/gps (/fix) fell silent 16 times, the longest at 39.9 s, and came back at 43.1 s.')
     assert said[-1] == f"  {recording['incidents'][0]['headline']}"
+
+
+def test_nodes_that_fall_silent_at_once_are_not_late(cases, tmp_path: Path) -> None:
+    """One robot of two loses its link; the other one, and the station, go on."""
+    case, = cases.folder.glob('15_*')
+    subprocess.run([sys.executable, '-B', str(case / 'make.py')], check=True,
+                   env={**os.environ, 'OUT': str(tmp_path)}, stdout=subprocess.DEVNULL)
+    normal = [str(tmp_path / f'n{number}.bag') for number in range(1, 7)]
+    model, said = str(tmp_path / 'm'), tmp_path / 'said.json'
+    assert train.main([*normal[:4], '-o', model]) == 0
+    assert calibrate.main(['--model', model, '--normal', *normal[4:], '-o', model]) == 0
+    assert score.main([str(tmp_path / 'lost.bag'), '--model', model, '--json', str(said)]) == 0
+    recording, = json.loads(said.read_text('utf-8'))['recordings']
+    assert recording['incidents'][0]['headline'] == (
+        '7 nodes at once (/r1/imu, /r1/base, /r1/lidar and others) fell silent at 60.0 s, and '
+        'came back at 80.6 s.')
+    assert [alarm['busy'] for alarm in recording['alarms']] == [None] * len(recording['alarms'])

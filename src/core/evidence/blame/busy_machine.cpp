@@ -78,7 +78,7 @@ std::optional<Busy> BusyMachine::late(const std::vector<double>& shares, const S
     heard[component] = heard[component] || scorer.heard().hasSeen(id);
     if (model_->finding(track) == Finding::kSilent) {
       silent[component] = silent[component] || shares[track] > 1;
-    } else if (!late[component] && shares[track] > enough) {
+    } else if (!late[component] && shares[track] > enough && !isAbsence(model_->finding(track))) {
       late[component] = isOfLate(track, scorer, events);
     }
   }
