@@ -4,7 +4,7 @@ from __future__ import annotations
 import contextlib
 import subprocess
 import time
-from typing import ContextManager, Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import ContextManager, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 from self_awareness_evaluation.live.breaking import stopped
 from self_awareness_evaluation.live.listeners import STARTED_WITHIN_S, TopicListener, heard
@@ -126,7 +126,7 @@ class FollowMe:
                             lambda: listener.last(source, topic) > 0.0, STARTED_WITHIN_S)
             yield listener.last(source, topic)
 
-    def _expected(self, components: Sequence[str]) -> Sequence[Tuple[str, str]]:
+    def _expected(self, components: Iterable[str]) -> Sequence[Tuple[str, str]]:
         return [(f'/{name}', self.topics[name]) for name in components]
 
     def _can_be(self, name: str) -> bool:

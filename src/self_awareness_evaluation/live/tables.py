@@ -74,8 +74,8 @@ def _latencies(values: Sequence[Optional[float]]) -> str:
     if not raised:
         return text
     median = median_low(math.inf if value is None else value for value in values)
-    return (f'{text}, {median:.2f} s' if median < math.inf else f'{text}, {_NONE}') + \
-        f' ({min(raised):.2f} to {max(raised):.2f})'
+    typical = f'{median:.2f} s' if median < math.inf else _NONE
+    return f'{text}, {typical} ({min(raised):.2f} to {max(raised):.2f})'
 
 
 def _blame(rows: Sequence[Row]) -> str:
@@ -106,10 +106,11 @@ def _quiet(kind: str, rows: Sequence[Row]) -> List[str]:
     suspicions = sum(row.suspicions or 0 for row in rows)
     standing_s = sum(row.standing_s or 0.0 for row in rows)
     low, high = confidence.poisson_rate(alarms, hours)
+    named = sum(row.named or 0 for row in rows)
     return [f'**{kind}**', f'{60.0 * hours:.0f} min',
             f'{suspicions} ({suspicions / hours:.1f} an hour)',
             f'{alarms} (95 %: {low:.1f} to {high:.1f} an hour; expected by calibrate: '
-            f'{rows[0].expected:.2g}); {sum(row.named or 0 for row in rows)} name a node', _NONE,
+            f'{rows[0].expected or math.nan:.2g}); {named} name a node', _NONE,
             f'an alarm stood for {standing_s:.0f} s ({standing_s / hours / 36.0:.2g} % of the '
             'time)', _text(_counted([said for row in rows for said in row.said.split(SEPARATOR)]))]
 
