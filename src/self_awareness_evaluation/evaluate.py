@@ -2,13 +2,10 @@
 from __future__ import annotations
 
 import argparse
-import contextlib
 import shlex
-import signal
 import sys
-import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Iterator, Optional, Sequence
+from typing import Optional, Sequence
 
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
@@ -19,18 +16,15 @@ from self_awareness_evaluation.families import experiment as families, report as
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import KINDS, Learning
 from self_awareness_evaluation.fleet import command as fleet
+from self_awareness_evaluation.live import command as live
 from self_awareness_evaluation.modes import command as modes
 from self_awareness_evaluation.page_section import write_section
 from self_awareness_evaluation.recordings import outages, report as recordings_report
-from self_awareness_evaluation.recovery import arguments as recovery_arguments
 from self_awareness_evaluation.simulated import attributes_command, experiment, report
 from self_awareness_evaluation.simulated.experiment import Plan
 from self_awareness_evaluation.simulated.records import default_faults
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import load_scenario
-
-if TYPE_CHECKING:
-    from self_awareness_evaluation.nodes import session as nodes_session
 
 _SHORT = Learning(2, 30.0, 1, 60.0)
 _FAULTS = tuple(kind.split()[0] for kind in KINDS)
@@ -94,56 +88,6 @@ def _families(arguments: argparse.Namespace, command: str) -> None:
         print(f'written: {path}')
 
 
-def _live(arguments: argparse.Namespace, command: str) -> None:
-    # ROS is imported only here and in _nodes: the other parts do not need it.
-    from self_awareness_evaluation.live import evaluation, session
-    _clean_up_when_terminated()
-    plan = session.SessionPlan(arguments.rounds, arguments.training, arguments.calibration,
-                               arguments.normal)
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    with _folder(arguments.recordings) as folder:
-        paths = evaluation.evaluate(plan, folder, arguments.output, command)
-    for path in paths:
-        print(f'written: {path}')
-
-
-def _nodes(arguments: argparse.Namespace, command: str) -> None:
-    from self_awareness_evaluation.nodes import evaluation
-    _clean_up_when_terminated()
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    with _folder(arguments.recordings) as folder:
-        paths = evaluation.evaluate(nodes_plan(arguments), folder, arguments.output, command)
-    for path in paths:
-        print(f'written: {path}')
-
-
-def _soak(arguments: argparse.Namespace, command: str) -> None:
-    from self_awareness_evaluation.soak import evaluation
-    from self_awareness_evaluation.soak.session import SoakPlan
-    _clean_up_when_terminated()
-    plan = SoakPlan(arguments.minutes, arguments.seed, arguments.speed, arguments.starts,
-                    arguments.training, arguments.calibrations, arguments.calibration,
-                    arguments.budget)
-    with _folder(arguments.recordings) as folder:
-        paths = evaluation.evaluate(plan, folder, arguments.output, command)
-    for path in paths:
-        print(f'written: {path}')
-
-
-def _recovery(arguments: argparse.Namespace, command: str) -> None:
-    from self_awareness_evaluation.recovery import report as recovery_report
-    from self_awareness_evaluation.recovery import session
-    _clean_up_when_terminated()
-    plan = session.RecoveryPlan(arguments.times, arguments.minutes, arguments.seed,
-                                arguments.speed, arguments.training)
-    with _folder(arguments.recordings) as folder:
-        recovered = session.run(plan, folder)
-    print(f'written: {recovery_report.write(arguments.output, plan, recovered, command)}')
-    failures = recovery_report.failures(recovered)
-    if failures:
-        raise ValueError('; '.join(failures))
-
-
 def _pages(arguments: argparse.Namespace, command: str) -> None:
     del command
     print('\n'.join(pages.check(arguments.docs)))
@@ -153,32 +97,6 @@ def _numbers(arguments: argparse.Namespace, command: str) -> None:
     del command
     write_section(arguments.readme, readme_numbers.SECTION, readme_numbers.section(arguments.docs))
     print(f'written: {arguments.readme}')
-
-
-def nodes_plan(arguments: argparse.Namespace) -> nodes_session.SessionPlan:
-    """Return the plan that the arguments of `nodes` ask for."""
-    from self_awareness_evaluation.nodes.session import SessionPlan
-    return SessionPlan(arguments.starts, arguments.training, arguments.calibrations,
-                       arguments.calibration, arguments.minutes, arguments.burst_minutes)
-
-
-def _clean_up_when_terminated() -> None:
-    """Let a termination clean up like Ctrl-C, which shells let be ignored in the background."""
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.default_int_handler)
-
-
-@contextlib.contextmanager
-def _folder(given: Optional[Path]) -> Iterator[Path]:
-    """Return the folder for recordings and logs; a temporary one is removed at the end."""
-    if given is None:
-        with tempfile.TemporaryDirectory() as temporary:
-            yield Path(temporary)
-        return
-    given.mkdir(parents=True, exist_ok=True)
-    if any(given.glob('session*')):
-        raise ValueError(f'--recordings {given}: holds a session already; name another folder')
-    yield given.resolve()
 
 
 def parser() -> argparse.ArgumentParser:
@@ -220,31 +138,7 @@ def parser() -> argparse.ArgumentParser:
         'compare', help='two versions side by side, by what the same commands measured',
         description='Writes a page about two folders that families, simulated or recordings wrote '
         'to with -o, in two versions of this package.'))
-    _add_live(parts.add_parser(
-        'live', help='the follow-me robot as 15 processes, and the monitor',
-        description='Starts master and robot, records, trains and calibrates, starts the monitor, '
-        'and induces fault after fault in rounds; a round takes about 5 minutes. Other systems '
-        'judge the recording of it afterwards.'))
-    _add_nodes(parts.add_parser(
-        'nodes', help='a system of nodes of Debian packages, and the monitor',
-        description='Starts the nodes several times and records them, trains and calibrates, '
-        'starts them once more, with the monitor, watches them undisturbed, and then breaks one '
-        'after the other; with the default options, this takes an hour and a half. '
-        'scripts/packaged_nodes_env.sh installs the nodes and runs this.'))
-    _add_soak(parts.add_parser(
-        'soak', help='the follow-me robot at 10 times its speed, and the monitor, for an hour',
-        description='Records, trains and calibrates on several starts of the fast robot, starts '
-        'the monitor, and lets faults drawn by the seed hit the robot. It fails if one is missed, '
-        'if an alarm comes without one, or if the memory of the monitor grows. scripts/soak.sh '
-        'runs this.'))
-    recovery = parts.add_parser(
-        'recovery', help='the same robot with a recovery: what hangs, and what is restarted',
-        description='Lets the laser driver hang again and again, then faults at random hit the '
-        'robot. It fails if the driver is not back in time, or if a healthy node is restarted. '
-        'scripts/recovery.sh runs this.')
-    recovery.set_defaults(work=_recovery)
-    recovery_arguments.add(recovery)
-    _add_folder(recovery)
+    live.add(parts)
     _add_pages(parts.add_parser(
         'pages', help='which pages were measured with an older method',
         description='Lists the pages that a measurement wrote, with the version of the method, '
@@ -275,74 +169,6 @@ def _add_recordings(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--data', type=Path, required=True, metavar='DIR',
                         help='the folder of the recordings')
     tunings.add(parser)
-
-
-def _add_live(parser: argparse.ArgumentParser) -> None:
-    parser.set_defaults(work=_live)
-    options.add_output(parser, 'the page, the CSV file and the plot')
-    parser.add_argument('--rounds', type=cli.count, default=5, metavar='N',
-                        help='how often each fault is induced (default: 5)')
-    parser.add_argument('--training', type=options.calibration_s, nargs='+',
-                        default=(60.0, 60.0, 60.0), metavar='S',
-                        help='lengths of the recordings to learn from [s], each of another start '
-                        'of the robot (default: 60 60 60)')
-    parser.add_argument('--calibration', type=options.calibration_s, default=240.0,
-                        metavar='S', help='length of the recording that the limits are found by '
-                        '[s] (default: 240)')
-    parser.add_argument('--normal', type=options.calibration_s, default=20.0, metavar='S',
-                        help='normal operation in each round [s] (default: 20)')
-    _add_folder(parser)
-
-
-def _add_folder(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('--recordings', type=Path, metavar='DIR',
-                        help='folder to keep recordings, model and logs in; recordings of normal '
-                        'operation that it holds already are used again (default: all are removed '
-                        'at the end)')
-
-
-def _add_nodes(parser: argparse.ArgumentParser) -> None:
-    parser.set_defaults(work=_nodes)
-    options.add_output(parser, 'the page and the CSV file')
-    parser.add_argument('--starts', type=cli.count, default=3, metavar='N',
-                        help='starts of the nodes to learn from (default: 3)')
-    parser.add_argument('--training', type=options.calibration_s, default=150.0, metavar='S',
-                        help='length of the recording of each of them [s] (default: 150)')
-    parser.add_argument('--calibrations', type=cli.count, default=1, metavar='N',
-                        help='further starts that the limits are found by (default: 1)')
-    parser.add_argument('--calibration', type=options.calibration_s, default=250.0,
-                        metavar='S', help='length of the recording of each of them [s] '
-                        '(default: 250)')
-    parser.add_argument('--minutes', type=options.minutes, default=60.0, metavar='MIN',
-                        help='normal operation that is watched (default: 60)')
-    parser.add_argument('--burst-minutes', type=options.minutes, default=20.0, metavar='MIN',
-                        help='the same after that, beside short bursts of foreign load '
-                        '(default: 20)')
-    _add_folder(parser)
-
-
-def _add_soak(parser: argparse.ArgumentParser) -> None:
-    parser.set_defaults(work=_soak)
-    parser.add_argument('-o', '--output', type=Path, default=Path('docs'), metavar='DIR',
-                        help='folder of reliability.md, whose section is written (default: docs)')
-    parser.add_argument('--minutes', type=options.minutes, default=60.0, metavar='MIN',
-                        help='how long the monitor runs (default: 60)')
-    parser.add_argument('--seed', type=cli.count, default=1, help='of the faults and the robot '
-                        '(default: 1)')
-    parser.add_argument('--speed', type=cli.above_zero('a factor of the speed'), default=10.0,
-                        metavar='N', help='times the usual speed of the robot (default: 10)')
-    parser.add_argument('--starts', type=cli.count, default=4, metavar='N',
-                        help='starts of the robot to learn from (default: 4)')
-    parser.add_argument('--training', type=options.calibration_s, default=90.0, metavar='S',
-                        help='length of the recording of each of them [s] (default: 90)')
-    parser.add_argument('--calibrations', type=cli.count, default=4, metavar='N',
-                        help='further starts that the limits are found by (default: 4)')
-    parser.add_argument('--calibration', type=options.calibration_s, default=120.0,
-                        metavar='S', help='length of the recording of each of them [s] '
-                        '(default: 120)')
-    parser.add_argument('--budget', type=cli.budget, default=0.1, metavar='B',
-                        help='false alarms an hour that the limits allow (default: 0.1)')
-    _add_folder(parser)
 
 
 def _add_simulated(parser: argparse.ArgumentParser) -> None:

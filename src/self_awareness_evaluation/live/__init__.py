@@ -1,1 +1,1 @@
-"""Detectors on the running follow-me robot: the monitor live, others on its recording."""
+"""Sessions with a running robot and the monitor: one session, and a plan for each question."""

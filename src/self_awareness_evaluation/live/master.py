@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import contextlib
 import os
-import subprocess
 from pathlib import Path
 from typing import Iterator, Sequence
 
@@ -32,7 +31,7 @@ def own_master(folder: Path) -> Iterator[Processes]:
     os.environ.pop('ROS_HOSTNAME', None)
     with Processes(folder) as processes:
         processes.start('roscore', 'roscore', '-p', str(port))
-        await_condition('the master answers', _answers, STARTED_WITHIN_S)
+        await_condition('the master answers', rosgraph.is_master_online, STARTED_WITHIN_S)
         # What it logs would be heard by the monitor.
         rospy.init_node('evaluate', disable_signals=True, disable_rosout=True)
         try:
@@ -58,9 +57,3 @@ def unregister(ended: Sequence[str]) -> None:
         rosnode.cleanup_master_blacklist(rosgraph.Master('/evaluate'), left)
     except (rosnode.ROSNodeException, rosgraph.MasterException, OSError) as error:
         raise LiveError(f'the master does not answer any more: {error}') from error
-
-
-def _answers() -> bool:
-    """Return whether the master answers."""
-    return subprocess.run(['rosnode', 'list'], stdout=subprocess.DEVNULL,
-                          stderr=subprocess.DEVNULL, check=False).returncode == 0

@@ -1,67 +1,66 @@
-"""Other systems on the recording of a live session, judged afterwards."""
+"""Other systems on the recording of a session, judged afterwards."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
-from typing import Dict, List, Optional
+from typing import List, Sequence
 
-from self_awareness import TrainedModel, recordings
+from self_awareness import DEFAULT_WINDOW, TrainedModel
+from self_awareness import recordings as bags
 from self_awareness.parts import BagPart
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import catalogue
-from self_awareness_evaluation.live.samples import Sample, measure_alarms
-from self_awareness_evaluation.live.session import Session
-from self_awareness_evaluation.systems import watched_by
+from self_awareness_evaluation.live.measures import ERROR, Status, measure
+from self_awareness_evaluation.live.recordings import (CALIBRATION, MODEL, SESSION, TRAINING,
+                                                       recordings)
+from self_awareness_evaluation.live.rows import Row
+from self_awareness_evaluation.systems import Judged, watched_by
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 SYSTEMS = ('paper', 'frequency_learned')
 """They learn from the session's training, and their thresholds come from its calibration."""
 
 
-@dataclass(frozen=True)
-class Found:
-    """What is found out afterwards.
+def judge(stretches: Sequence[Row], folder: Path) -> List[Row]:
+    """Judge a session by all SYSTEMS; return a row for each of its stretches.
 
     Args:
-        samples: of all SYSTEMS.
-        watched: how many components the monitor's model and each of the SYSTEMS watches; None: it
-            judges all together.
-        components: whom the calibration's recording holds.
-    """
-
-    samples: List[Sample]
-    watched: Dict[str, Optional[int]]
-    components: int
-
-
-def judge(session: Session, live: str) -> Found:
-    """Judge a session by all SYSTEMS.
-
-    Args:
-        session: with its recordings.
-        live: what the monitor's detector is called.
+        stretches: not yet measured.
+        folder: with its recordings and its model.
 
     Raises:
         BagError: a recording cannot be read.
     """
-    model = TrainedModel.load(str(session.model))
-    training = [_read(model, path) for path in session.training]
-    calibration = [_read(model, session.calibration)]
-    recording = _read(model, session.recording)
-    components = {event_type.source for event_type in calibration[0].event_types}
-    samples: List[Sample] = []
-    watched: Dict[str, Optional[int]] = {live: sum(
-        each.is_watched and each.component in components for each in model.coverage())}
+    model = TrainedModel.load(str(folder / MODEL))
+    training, normal, (events,) = ([_read(model, path) for path in recordings(folder, name)]
+                                   for name in (TRAINING, CALIBRATION, SESSION))
+    components = {each.component for each in model.coverage()}
+    rows: List[Row] = []
     for name in SYSTEMS:
         system = catalogue.make(name)
         system.train(training)
-        system.calibrate(calibration)
-        watched[name] = watched_by(system, components)
-        alarms = system.judge(recording).alarms
-        samples += [measure_alarms(name, stretch, alarms) for stretch in session.stretches]
-    return Found(samples, watched, len(components))
+        system.calibrate(normal)
+        said = statuses(system.judge(events))
+        for stretch in stretches:
+            row = measure(replace(stretch, system=name, expected=None), said)
+            rows.append(replace(row, watched=watched_by(system, components))
+                        if row.is_normal else row)
+    return rows
+
+
+def statuses(judged: Judged) -> List[Status]:
+    """Return what a system says of a recording as the monitor would say it."""
+    raised = {alarm.start: alarm for alarm in judged.alarms}
+    found = []
+    for start, stands, settles in zip(judged.start, judged.standing, judged.settling):
+        end = int(start) + DEFAULT_WINDOW
+        suspects = raised[end].suspects if end in raised else ()
+        found.append(Status(end / SECOND_NS, ERROR if stands else 0, bool(settles),
+                            suspects=None if suspects is None else tuple(suspects)))
+    return found
 
 
 def _read(model: TrainedModel, path: Path) -> WindowedEvents:
-    events = recordings.read(model, BagPart(str(path)))
+    events = bags.read(model, BagPart(str(path)))
     return WindowedEvents(events.event_types, events.stamps, events.ids, events.end + 1,
                           attributes=events.attributes, waiting=events.waiting)

@@ -1,4 +1,4 @@
-"""The processes of the live evaluation: each with its log, all ended together."""
+"""The processes of a live session, each with its log, all ended together; and how time passes."""
 from __future__ import annotations
 
 import os
@@ -8,6 +8,11 @@ import subprocess
 import time
 from pathlib import Path
 from typing import Callable, List
+
+from self_awareness import progress
+
+WARM_UP_S = 10.0
+"""So long after the start of a robot is no normal operation yet [s]."""
 
 _END_WITHIN_S = 30.0  # roslaunch takes half of it before it kills its nodes, which only it can
 _POLL_S = 0.05
@@ -22,6 +27,18 @@ def free_port() -> int:
     with socket.socket() as free:
         free.bind(('127.0.0.1', 0))
         return int(free.getsockname()[1])
+
+
+def say(text: str) -> None:
+    """Print a line with the time of day."""
+    progress.say(f'{time.strftime("%H:%M:%S")} {text}')
+
+
+def wait(seconds: float, what: str) -> None:
+    """Let time pass, and tell for what."""
+    say(f'{what} ({seconds:g} s)')
+    for _ in progress.waiting(seconds, what):
+        pass
 
 
 def await_condition(what: str, condition: Callable[[], bool], within_s: float) -> None:

@@ -1,211 +1,202 @@
-"""One session of the live evaluation: robot, recordings, model, monitor, and fault after fault."""
+"""One live session: recordings of a robot, a model, the monitor, and a plan of faults."""
 from __future__ import annotations
 
-import contextlib
-import subprocess
+import os
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Callable, Dict, Iterator, List, Optional, Sequence
+from typing import (Any, Callable, ContextManager, Dict, Iterator, List, Optional,
+                    Sequence, Tuple)
 
-from self_awareness_evaluation.live.learning import Apart, learn
-from self_awareness_evaluation.live.listeners import (STARTED_WITHIN_S, MonitorListener,
-                                                      RobotListener, reset_until_quiet)
-from self_awareness_evaluation.live.master import own_master
-from self_awareness_evaluation.live.passing import say, stretch, wait
-from self_awareness_evaluation.live.processes import LiveError, Processes, await_condition
-from self_awareness_evaluation.live.samples import Status, Stretch
-from self_awareness_evaluation.simulated.measures import NORMAL
-from self_awareness_follow_me import induction
-from self_awareness_follow_me.effects import Crash, Effect, Intruder, Silence, Starvation
-from self_awareness_follow_me.faults import effect_of
-from self_awareness_follow_me.scenario import load_scenario
+import yaml
 
-FAULTS_S: Dict[str, float] = {
-    'lat': 8.0, 'half:player': 8.0, 'double:gaze_control': 8.0, 'order': 8.0, 'unknown': 5.0,
-    'extra': 8.0, 'rs': 20.0, 'ac': 35.0, 'cc1': 6.0, 'cc2': 6.0, 'silence': 6.0}
-"""How long each fault lasts in a round [s], in their order; the last one ends the robot."""
+from self_awareness import TrainedModel
+from self_awareness.calibration.limits import BUDGET
+from self_awareness_evaluation.families.protocol import Learning
+from self_awareness_evaluation.live import usage
+from self_awareness_evaluation.live.breaking import nothing
+from self_awareness_evaluation.live.listeners import MONITOR, STARTED_WITHIN_S, MonitorListener
+from self_awareness_evaluation.live.measures import measure
+from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
+                                                      becomes_true, say, wait)
+from self_awareness_evaluation.live.recordings import Recorder, System
+from self_awareness_evaluation.live.rows import Row
+from self_awareness_evaluation.simulated.measures import AFTERMATH_S
+from self_awareness_follow_me.induction import process_id
 
-# One regular topic of each component that has one.
-_REGULAR = ('odom', 'scan', 'pose', 'obstacles', 'legs', 'tracks', 'task/state', 'battery',
-            'camera/image', 'faces', 'joint_states')
-_SHARED = 'cmd_vel'  # where the intruder publishes
-_EXCLUDED = '/rosout_agg|/self_awareness/.*|/diagnostics.*'
-_RECORDED_SEED = 100  # of the robot that is recorded; beyond the numbers of the rounds
-_WARM_UP_S = 10.0  # after the robot's start, which is no normal operation
+_STATUS_WITHIN_S = 5.0  # of the last window of a stretch
+_CLOCK_STEP_S = 0.05  # a clock that moved by more than this was set
 
 
 @dataclass(frozen=True)
-class SessionPlan:
+class Step:
+    """A fault that is to come, or normal operation.
+
+    Args:
+        fault: its name; of normal operation: what it is called.
+        lasts_s: from the onset to when it is undone, at most [s].
+        culprits: sources to blame; empty: none, or the whole machine.
+        broken: induces it, hands out its onset [s since 1970], and undoes it.
+        is_normal: nothing is wrong.
+        round: number, from 1 on.
+        reset: the monitor's ~reset is called before.
+        returned: waits instead until the node is back by itself; returns when it was heard
+            [s since 1970], None: it was not in `lasts_s`.
+    """
+
+    fault: str
+    lasts_s: float
+    culprits: Tuple[str, ...] = ()
+    broken: Callable[[], ContextManager[float]] = nothing
+    is_normal: bool = False
+    round: int = 1
+    reset: bool = False
+    returned: Optional[Callable[[], Optional[float]]] = None
+
+
+@dataclass(frozen=True)
+class Plan:
     """What a session does.
 
     Args:
-        rounds: how often each fault is induced.
-        training: lengths of the recordings to learn from, each of another start [s].
-        calibration_s: of the one that the limits are found by, of one more start [s].
-        normal_s: of the normal operation in each round, for false alarms [s].
+        system: the robot.
+        what: is recorded of it, to learn from (recordings).
+        learning: how much.
+        steps: drawn one after the other, while the session goes on.
+        quiet_s: a fault is over when there has been no alarm for so long after it was undone [s],
+            AFTERMATH_S or more.
+        quiet_within_s: an alarm that stands for longer does not clear [s]; 0: nobody waits.
+        budget: false alarms an hour that the limits allow.
+        beside: commands that run beside the monitor.
+        also: called after every step, returns further rows.
     """
 
-    rounds: int
-    training: Sequence[float]
-    calibration_s: float
-    normal_s: float
+    system: System
+    what: str
+    learning: Learning
+    steps: Iterator[Step]
+    quiet_s: float
+    quiet_within_s: float
+    budget: float = BUDGET
+    beside: Sequence[Sequence[str]] = ()
+    also: Callable[[], List[Row]] = list
 
 
-@dataclass(frozen=True)
-class Session:
-    """What a session has: recordings, what was wrong when, and what the monitor said."""
+def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], None]) -> List[Row]:
+    """Run a session, and return its stretches, not yet measured.
 
-    training: List[Path]
-    calibration: Path
-    model: Path
-    recording: Path
-    stretches: List[Stretch]
-    statuses: List[Status]
-
-
-def run(plan: SessionPlan, folder: Path,
-        told: Callable[[Stretch, Sequence[Status]], None]) -> Session:
-    """Run a session under a master of its own; nothing of it runs on afterwards.
+    The master runs, and this process is a node.
 
     Args:
         plan: what to do.
         folder: exists; for recordings, the model and logs.
-        told: called after every stretch, with all statuses so far.
+        processes: to start programs among.
+        told: gets every row as soon as it is measured.
 
     Raises:
         LiveError: a program failed, or something does not happen in time.
         InduceError: a fault cannot be induced.
     """
-    with own_master(folder) as processes:
-        return _Session(plan, folder, processes, told).run()
+    model = Recorder(plan.system, plan.what, folder, processes).learn(plan.learning, plan.budget)
+    plan.system.start()
+    monitor = MonitorListener()
+    config = folder / 'monitor.yaml'
+    config.write_text(yaml.safe_dump({'recorder': {'directory': str(folder / 'alarms')}}))
+    processes.start('monitor', 'roslaunch', '--wait', 'self_awareness', 'monitor.launch',
+                    f'model:={model}', f'config:={config}', 'respawn:=false')
+    await_condition('the monitor says something', lambda: bool(monitor.statuses),
+                    STARTED_WITHIN_S)
+    beside = [processes.start(f'beside_{number}', *command)
+              for number, command in enumerate(plan.beside, 1)]
+    # Where it stays loud, the rows tell it.
+    becomes_true(lambda: monitor.quiet_for() >= plan.quiet_s, STARTED_WITHIN_S)
+    walk = Walk(plan, monitor, _promised(model))
+    for step in plan.steps:
+        for row in (walk.take(step), *plan.also()):
+            told(row)
+    for process in beside:
+        processes.end(process)
+    plan.system.end()
+    return walk.stretches
 
 
-class _Session:
-    def __init__(self, plan: SessionPlan, folder: Path, processes: Processes,
-                 told: Callable[[Stretch, Sequence[Status]], None]) -> None:
+class Walk:
+    """Takes step after step beside a monitor.
+
+    Args:
+        plan: of the session.
+        monitor: that is listened to.
+        promised: what the model says of itself, by the columns of rows of normal operation.
+    """
+
+    def __init__(self, plan: Plan, monitor: MonitorListener,
+                 promised: Dict[str, Any]) -> None:
+        self.stretches: List[Row] = []
         self._plan = plan
-        self._folder = folder
-        self._processes = processes
-        self._told = told
-        self._scenario = load_scenario()
-        self._robot = RobotListener([*_REGULAR, _SHARED])
-        self._monitor = MonitorListener()
-        self._robot_process: Optional[subprocess.Popen] = None
-        self._apart = Apart()
-        self._stretches: List[Stretch] = []
+        self._monitor = monitor
+        self._promised = promised
+        self._pid = process_id(MONITOR)
+        self._normal_since: Optional[float] = None  # the fault before is over since then
 
-    def run(self) -> Session:
-        training = [self._recorded(f'training_{number}', length, _RECORDED_SEED + number)
-                    for number, length in enumerate(self._plan.training, 1)]
-        calibration = self._recorded('calibration', self._plan.calibration_s, _RECORDED_SEED)
-        self._start_robot(seed=1)
-        model = self._folder / 'live.model'
-        learn(self._processes, model, training, [calibration], '--graph')
-        recording = self._folder / 'session.bag'
-        recorder = self._start_recorder(recording)
-        self._processes.start('monitor', 'roslaunch', '--wait', 'self_awareness', 'monitor.launch',
-                              f'model:={model}', f'config:={self._config()}')
-        for number in range(1, self._plan.rounds + 1):
-            self._round(number)
-        self._processes.end(recorder)
-        return Session(training, calibration, model, recording, self._stretches,
-                       self._monitor.statuses)
-
-    def _round(self, number: int) -> None:
-        if number > 1:
-            self._start_robot(seed=number)
-        note = reset_until_quiet(self._monitor)
-        with stretch(number, NORMAL, (), note, time.time(), self._over):
-            wait(self._plan.normal_s, f'round {number}: normal operation')
-        for kind, length in FAULTS_S.items():
-            note = reset_until_quiet(self._monitor)
-            effect = effect_of(self._scenario, kind)
-            with self._induced(kind, effect) as onset, \
-                    stretch(number, kind, effect.culprits, note, onset, self._over):
-                wait(length, f'round {number}: {kind}')
-            if isinstance(effect, Crash):
-                self._start_component(effect.component, seed=number)
-
-    @contextlib.contextmanager
-    def _induced(self, kind: str, effect: Effect) -> Iterator[float]:
-        """Induce a fault and tell its onset; lasting ones end with the with statement."""
-        if isinstance(effect, Crash):
-            induction.crash(effect)
-            yield time.time()
-        elif isinstance(effect, Silence):
-            induction.silence(self._scenario)
-            yield time.time()
-        elif isinstance(effect, Starvation):
-            with induction.starved(effect):
-                yield time.time()
-        elif isinstance(effect, Intruder):
-            begin = time.time()
-            with induction.intruding(effect):
-                # It takes seconds to start: the fault begins with its first message.
-                source, = effect.culprits
-                await_condition(f'{source} publishes',
-                                lambda: self._robot.last(source, _SHARED) > begin,
-                                STARTED_WITHIN_S)
-                yield self._robot.last(source, _SHARED)
+    def take(self, step: Step) -> Row:
+        """Induce a fault and undo it, or let normal operation pass; return what was measured."""
+        note = self._monitor.reset_until_quiet() if step.reset else ''
+        before = usage.look(self._pid)
+        with step.broken() as onset:
+            if step.is_normal and self._normal_since is not None:
+                onset = self._normal_since
+            ahead_s, load = time.time() - time.monotonic(), os.getloadavg()[0]
+            back = _passed(step)
+            end = time.time()
+            set_s = end - time.monotonic() - ahead_s
+        row = Row(step.fault, ' '.join(source[1:] for source in step.culprits), round=step.round,
+                  onset=onset, lasted_s=end - onset, note=note, load=load, void=_clock(set_s))
+        if step.is_normal:
+            row = replace(row, alarms=0, **self._promised)
+            self._normal_since = None
         else:
-            with induction.disturbed(kind):
-                yield time.time()
+            row = self._over(row)
+        becomes_true(lambda: self._monitor.statuses[-1].stamp > end, _STATUS_WITHIN_S)
+        self.stretches.append(row)
+        row = measure(row, self._monitor.statuses, self._monitor.incidents)
+        row = usage.added(row, before, usage.look(self._pid))
+        if back is not None and row.blamed_s is not None:
+            row = replace(row, back_s=back - onset - row.blamed_s)
+        return row
 
-    def _over(self, done: Stretch) -> None:
-        self._stretches.append(done)
-        self._told(done, self._monitor.statuses)
+    def _over(self, row: Row) -> Row:
+        """Wait until a fault that was undone is over; note when it was."""
+        self._normal_since = None
+        if not self._plan.quiet_within_s:
+            return row
+        recovered = time.time()
+        # Where it does not clear in time, the row tells it.
+        becomes_true(lambda: min(self._monitor.quiet_for(), time.time() - recovered)
+                     >= self._plan.quiet_s, self._plan.quiet_within_s)
+        self._normal_since = recovered + AFTERMATH_S
+        return replace(row, recovered_s=recovered - row.onset)
 
-    def _start_robot(self, seed: int) -> None:
-        if self._robot_process is not None:
-            self._processes.end(self._robot_process)
-        say('starting the robot')
-        begin = time.time()
-        self._robot_process = self._processes.start(
-            'robot', 'roslaunch', '--wait', 'self_awareness', 'follow_me.launch', f'seed:={seed}')
-        for topic in _REGULAR:
-            self._await_heard(topic, begin)
-        wait(_WARM_UP_S, 'warming up')
 
-    def _start_component(self, name: str, seed: int) -> None:
-        """Start a node that was killed as the launch file does."""
-        begin = time.time()
-        self._processes.start(name, 'rosrun', 'self_awareness', 'component', name,
-                              '--seed', str(seed), f'__name:={name}')
-        for topic in set(_REGULAR) & set(self._scenario.component(name).outputs()):
-            self._await_heard(topic, begin)
+def _passed(step: Step) -> Optional[float]:
+    """Let the time of a step pass; return when the node was back, if it came by itself."""
+    what = ' '.join((step.fault, *step.culprits))
+    if step.returned is None:
+        wait(step.lasts_s, what)
+        return None
+    say(what)
+    return step.returned()
 
-    def _await_heard(self, topic: str, after: float) -> None:
-        source = next(f'/{spec.name}' for spec in self._scenario.components
-                      if topic in spec.outputs())
-        await_condition(f'{source} publishes /{topic}',
-                        lambda: self._robot.last(source, topic) > after, STARTED_WITHIN_S)
 
-    def _recorded(self, name: str, length_s: float, seed: int) -> Path:
-        """Return a recording of a start; one that is there is used again."""
-        bag = self._folder / f'{name}.bag'
-        if bag.exists():
-            return bag
-        self._start_robot(seed)
-        self._apart.wait()
-        recorder = self._start_recorder(bag)
-        wait(length_s, f'recording {name}')
-        self._processes.end(recorder)
-        self._apart.ended()
-        if not bag.exists():
-            raise LiveError(f'{bag}: rosbag record has not written it, see '
-                            f'{self._folder / "record.log"}')
-        return bag
+def _clock(set_s: float) -> str:
+    """Return why a stretch does not count in which the machine's clock was set."""
+    return f"the machine's clock was set by {set_s:.2f} s" if abs(set_s) > _CLOCK_STEP_S else ''
 
-    def _start_recorder(self, bag: Path) -> subprocess.Popen:
-        recorder = self._processes.start('record', 'rosbag', 'record', '--all', '--exclude',
-                                         _EXCLUDED, '--output-name', str(bag), '__name:=record')
-        active = Path(f'{bag}.active')
-        await_condition(f'rosbag writes {bag.name}',
-                        lambda: active.exists() and active.stat().st_size > 0, STARTED_WITHIN_S)
-        return recorder
 
-    def _config(self) -> Path:
-        path = self._folder / 'monitor.yaml'
-        path.write_text('detector: evidence\n', encoding='utf-8')
-        return path
+def _promised(path: Path) -> Dict[str, Any]:
+    """Return what the model says of itself, by the columns of a row."""
+    model = TrainedModel.load(str(path))
+    if model.calibration is None:
+        raise LiveError(f'{path}: calibrate has written no limits')
+    coverage = model.coverage()
+    return {'expected': model.calibration.false_alarms_per_hour, 'components': len(coverage),
+            'watched': sum(each.is_watched for each in coverage)}

@@ -1,6 +1,6 @@
 """A relay of odometry that comes late as long as it is told to: `~late` (std_srvs/SetBool).
 
-Run as `python3 -m self_awareness_evaluation.nodes.late_relay INPUT OUTPUT`.
+Run as `python3 -m self_awareness_evaluation.live.late_relay INPUT OUTPUT`.
 """
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import rospy
 from nav_msgs.msg import Odometry
 from std_srvs.srv import SetBool, SetBoolRequest, SetBoolResponse
 
-from self_awareness_evaluation.nodes.system import LATE_S
+from self_awareness_evaluation.live.packaged_nodes import LATE_S
 
 _QUEUE = 100  # messages
 _LOOK_S = 0.5  # how often it looks whether it is shut down

@@ -13,7 +13,7 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import (BatteryState, CameraInfo, Image, Imu, LaserScan, MagneticField,
                              NavSatFix)
 
-from self_awareness_evaluation.nodes.system import CAMERAS_HZ
+from self_awareness_evaluation.live.packaged_nodes import CAMERAS_HZ
 
 _LENGTH_S = 60.0
 _JITTER = 0.02  # of the period, as one standard deviation

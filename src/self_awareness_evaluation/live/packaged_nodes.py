@@ -1,4 +1,4 @@
-"""What is started and what is broken: the nodes, all of Debian packages, and the faults."""
+"""Nodes of Debian packages, which nobody here wrote: what is started, and what is broken."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -26,26 +26,6 @@ class Node:
     topics: Tuple[str, ...] = ()
     file: str = ''
     manager: str = ''
-
-
-@dataclass(frozen=True)
-class Fault:
-    """Something that is done to a node, and undone.
-
-    Args:
-        kind: KILL and so on.
-        node: to which; empty: to the whole machine.
-        lasts_s: until it is undone [s].
-    """
-
-    kind: str
-    node: str
-    lasts_s: float
-
-    @property
-    def culprits(self) -> Tuple[str, ...]:
-        """The sources that are rightly named first."""
-        return (f'/{self.node}',) if self.node else ()
 
 
 CAMERAS_HZ = {'front': 15.0, 'rear': 10.0}
@@ -169,20 +149,20 @@ NODES = (
 """In the order in which they are started."""
 
 FAULTS = (
-    Fault(KILL, 'lidar', 10.0),
-    Fault(KILL, 'vision', 10.0),
-    Fault(KILL, 'robot_state_publisher', 10.0),
-    Fault(KILL, 'joystick', 10.0),
-    Fault(STOP, 'depth_camera', 10.0),
-    Fault(STOP, 'transforms', 10.0),
-    Fault(RESTART, 'base', 10.0),
-    Fault(RESTART, 'rear_threshold', 10.0),
-    Fault(HALF_RATE, 'front', 20.0),
-    Fault(HALF_RATE, 'rear', 20.0),
-    Fault(LATE, 'late_relay', 20.0),
-    Fault(STARVE, '', 15.0),
+    (KILL, 'lidar', 10.0),
+    (KILL, 'vision', 10.0),
+    (KILL, 'robot_state_publisher', 10.0),
+    (KILL, 'joystick', 10.0),
+    (STOP, 'depth_camera', 10.0),
+    (STOP, 'transforms', 10.0),
+    (RESTART, 'base', 10.0),
+    (RESTART, 'rear_threshold', 10.0),
+    (HALF_RATE, 'front', 20.0),
+    (HALF_RATE, 'rear', 20.0),
+    (LATE, 'late_relay', 20.0),
+    (STARVE, '', 15.0),
 )
-"""In the order in which they are induced."""
+"""Kind, node (empty: the whole machine) and length [s], in the order in which they are induced."""
 
 _ROBOT_DESCRIPTION = """\
 <robot name="cart">

@@ -1,0 +1,147 @@
+"""The simulated follow-me robot as processes: started, broken and mended."""
+from __future__ import annotations
+
+import contextlib
+import subprocess
+import time
+from typing import ContextManager, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
+
+from self_awareness_evaluation.live.breaking import stopped
+from self_awareness_evaluation.live.listeners import STARTED_WITHIN_S, TopicListener, heard
+from self_awareness_evaluation.live.processes import WARM_UP_S, Processes, await_condition, wait
+from self_awareness_evaluation.simulated.records import default_faults
+from self_awareness_follow_me import induction
+from self_awareness_follow_me.effects import Crash, Effect, Intruder, Silence
+from self_awareness_follow_me.faults import effect_of
+from self_awareness_follow_me.scenario import load_scenario
+
+CRASH, HANG, HALF, DOUBLE = 'crash', 'hang', 'half', 'double'
+"""Kinds of faults that hit any component: killed, its process stopped, at half or double rate."""
+
+
+class FollowMe:
+    """The robot at some speed; `rospy.init_node` has been called."""
+
+    def __init__(self, processes: Processes, seed: int, speed: float = 1.0,
+                 respawn: bool = False) -> None:
+        """Start nothing yet.
+
+        Args:
+            processes: to be started among.
+            seed: of all starts; each has another one of its own.
+            speed: in its usual one.
+            respawn: roslaunch starts nodes again that end.
+        """
+        self._scenario = load_scenario()
+        self._processes = processes
+        self._seed = 1000 * seed
+        self._speed = speed
+        self._respawn = respawn
+        self._running: Optional[subprocess.Popen] = None
+        crashes = [name.partition(':')[2] for name in default_faults(self._scenario)
+                   if name.startswith(f'{CRASH}:')]
+        self.topics: Dict[str, str] = {
+            name: f'/{next(iter(self._scenario.component(name).outputs()))}' for name in crashes}
+        """One topic of each component that publishes all the time."""
+
+    def start(self) -> None:
+        """Start all components, and wait until they do what they do all the time.
+
+        Raises:
+            LiveError: one does not in time.
+        """
+        with heard(self._expected(self.topics)):
+            self._running = self._processes.start(
+                'robot', 'roslaunch', '--wait', 'self_awareness', 'follow_me.launch',
+                f'seed:={self._next_seed()}', f'speed:={self._speed:g}',
+                f'respawn:={str(self._respawn).lower()}')
+        wait(WARM_UP_S, 'warming up')
+
+    def end(self) -> None:
+        """End all components."""
+        if self._running is not None:
+            self._processes.end(self._running)
+            self._running = None
+
+    def culprits(self, name: str) -> Tuple[str, ...]:
+        """Return the sources to blame for the fault of that name."""
+        kind, _, component = name.partition(':')
+        return (f'/{component}',) if kind == HANG else effect_of(self._scenario, name).culprits
+
+    def possible(self) -> List[str]:
+        """Return the faults that can hit at random: those of every regular component.
+
+        Components that only speak now and then are left out: they may be silent for seconds.
+        """
+        return [f'{kind}:{component}' for component in self.topics
+                for kind in (CRASH, HANG, HALF, DOUBLE) if self._can_be(f'{kind}:{component}')]
+
+    def broken(self, name: str) -> ContextManager[float]:
+        """Return what induces a fault, hands out its onset [s since 1970], and undoes it.
+
+        Who was killed is started again, if roslaunch does not do it, and heard; the whole robot,
+        too, if all were.
+
+        Entering and leaving it raise:
+            InduceError: it cannot be induced.
+            LiveError: who was killed is not heard again.
+        """
+        kind, _, component = name.partition(':')
+        if kind == HANG:
+            return stopped(induction.process_id(f'/{component}'))
+        effect = effect_of(self._scenario, name)
+        if isinstance(effect, Crash):
+            return self._killed(effect)
+        if isinstance(effect, Silence):
+            return self._silenced()
+        if isinstance(effect, Intruder):
+            return self._intruded(effect)
+        return _disturbed(name, effect)
+
+    @contextlib.contextmanager
+    def _killed(self, effect: Crash) -> Iterator[float]:
+        name = effect.component
+        induction.crash(effect)
+        yield time.time()
+        with heard(self._expected([name] if name in self.topics else [])):
+            if not self._respawn:
+                self._processes.start(
+                    name, 'rosrun', 'self_awareness', 'component', name, '--seed',
+                    str(self._next_seed()), '--speed', f'{self._speed:g}', f'__name:={name}')
+
+    @contextlib.contextmanager
+    def _silenced(self) -> Iterator[float]:
+        induction.silence(self._scenario)
+        yield time.time()
+        self.end()
+        self.start()
+
+    @contextlib.contextmanager
+    def _intruded(self, effect: Intruder) -> Iterator[float]:
+        source, = effect.culprits
+        topic = f'/{next(iter(effect.spec.outputs()))}'
+        with TopicListener([topic]) as listener, induction.intruding(effect):
+            # It takes seconds to start: the fault begins with its first message.
+            await_condition(f'{source} publishes {topic}',
+                            lambda: listener.last(source, topic) > 0.0, STARTED_WITHIN_S)
+            yield listener.last(source, topic)
+
+    def _expected(self, components: Iterable[str]) -> Sequence[Tuple[str, str]]:
+        return [(f'/{name}', self.topics[name]) for name in components]
+
+    def _can_be(self, name: str) -> bool:
+        try:
+            self.culprits(name)
+        except ValueError:  # too busy to do as much twice as often
+            return False
+        return True
+
+    def _next_seed(self) -> int:
+        self._seed += 1
+        return self._seed
+
+
+@contextlib.contextmanager
+def _disturbed(name: str, effect: Effect) -> Iterator[float]:
+    with induction.lasting(effect, name):
+        yield time.time()

@@ -1,0 +1,160 @@
+"""The plans: which robot, what is learned of it, what is done to it, and what runs beside it."""
+from __future__ import annotations
+
+import random
+import time
+from functools import partial
+from pathlib import Path
+from typing import Dict, Iterator, Sequence, Tuple
+
+from self_awareness_evaluation.families.protocol import Learning
+from self_awareness_evaluation.live import recovery
+from self_awareness_evaluation.live.breaking import Bursts
+from self_awareness_evaluation.live.follow_me import CRASH, HANG, FollowMe
+from self_awareness_evaluation.live.packaged_nodes import FAULTS
+from self_awareness_evaluation.live.packaged_system import PackagedSystem
+from self_awareness_evaluation.live.processes import Processes
+from self_awareness_evaluation.live.recordings import BAGS, EVENTS, SESSION, record_command
+from self_awareness_evaluation.live.reliability import AT_RANDOM, HANGS
+from self_awareness_evaluation.live.session import Plan, Step
+from self_awareness_evaluation.simulated.measures import AFTERMATH_S, NORMAL
+
+NORMAL_S = 20.0
+"""Of `live`: normal operation at the beginning of each round [s]."""
+
+FAULTS_S: Dict[str, float] = {
+    'lat': 8.0, 'half:player': 8.0, 'double:gaze_control': 8.0, 'order': 8.0, 'unknown': 5.0,
+    'extra': 8.0, 'rs': 20.0, 'ac': 35.0, 'cc1': 6.0, 'cc2': 6.0, 'silence': 6.0}
+"""Of `live`: how long each fault lasts in a round [s], in their order; the last one ends the
+robot."""
+
+UNDISTURBED = 'undisturbed'
+BURSTS = 'undisturbed, but for short bursts of foreign load'
+"""Of `nodes`: the names of normal operation."""
+
+SPEED = 10.0
+"""Of `soak` and `recovery`: of the robot, in its usual one."""
+
+SHORT_S, LONG_S = (0.2, 1.5), (4.0, 12.0)
+"""At random: shortest and longest of the short hangs, which need not be found, and of all other
+faults [s]."""
+
+PAUSE_S = (5.0, 20.0)
+"""At random: least and most of normal operation between two faults [s]."""
+
+_BUDGET = 0.1  # of the soak: false alarms an hour that the limits allow
+_PIECE_S = 600.0  # of normal operation, so that little is lost if the session fails
+_QUIET_S, _QUIET_WITHIN_S = 10.0, 60.0  # after a fault of the packaged nodes
+_AT_RANDOM_QUIET_WITHIN_S = 90.0
+_SHARE_OF_SHORT = 0.15
+_VICTIM = 'player'
+_BACK_WITHIN_S = 60.0
+_CRASH_RESPAWNED_S = 1.0  # who was killed is back at once
+# What the monitor and its operator say is no part of the robot.
+_EXCLUDED = '/rosout_agg|/self_awareness/.*|/diagnostics.*'
+
+
+def live(rounds: int, learning: Learning, folder: Path, processes: Processes) -> Plan:
+    """Return the plan of `evaluate live`: each kind of fault in each round."""
+    robot = FollowMe(processes, seed=0)
+
+    def steps() -> Iterator[Step]:
+        for number in range(1, rounds + 1):
+            yield Step(NORMAL, NORMAL_S, is_normal=True, round=number, reset=True)
+            for name, lasts_s in FAULTS_S.items():
+                yield Step(name, lasts_s, robot.culprits(name), partial(robot.broken, name),
+                           round=number, reset=True)
+
+    # In one file.
+    recorder = record_command(folder / SESSION, BAGS, f'exclude:={_EXCLUDED}', 'split:=10000')
+    return Plan(robot, BAGS, learning, steps(), AFTERMATH_S, 0.0, beside=[recorder])
+
+
+def nodes(minutes: float, burst_minutes: float, learning: Learning, folder: Path,
+          processes: Processes) -> Plan:
+    """Return the plan of `evaluate nodes`: undisturbed, with bursts, and fault after fault."""
+    system = PackagedSystem(folder, processes)
+
+    def steps() -> Iterator[Step]:
+        for length_s in _pieces(60.0 * minutes):
+            yield Step(UNDISTURBED, length_s, is_normal=True)
+        bursts = Bursts()
+        for length_s in _pieces(60.0 * burst_minutes):
+            yield Step(BURSTS, length_s, broken=bursts.run, is_normal=True)
+        for kind, node, lasts_s in FAULTS:
+            yield Step(kind, lasts_s, (f'/{node}',) if node else (),
+                       partial(system.broken, kind, node), reset=True)
+
+    # An operator looks on, with tools that training did not see.
+    return Plan(system, BAGS, learning, steps(), _QUIET_S, _QUIET_WITHIN_S, beside=[
+        ['rosbag', 'record', '--all', '--output-name', str(folder / f'{SESSION}_operator')],
+        ['rostopic', 'echo', '/diagnostics']])
+
+
+def soak(minutes: float, seed: int, learning: Learning, _: Path, processes: Processes) -> Plan:
+    """Return the plan of `evaluate soak`: faults at random."""
+    robot = FollowMe(processes, seed, SPEED)
+    return Plan(robot, EVENTS, learning, _at_random(robot, seed, minutes), AFTERMATH_S,
+                _AT_RANDOM_QUIET_WITHIN_S, _BUDGET)
+
+
+def with_recovery(times: int, minutes: float, seed: int, learning: Learning, folder: Path,
+                  processes: Processes) -> Plan:
+    """Return the plan of `evaluate recovery`: a node hangs again and again; faults at random."""
+    robot = FollowMe(processes, seed, SPEED, respawn=True)
+
+    def steps() -> Iterator[Step]:
+        name, source = f'{HANG}:{_VICTIM}', f'/{_VICTIM}'
+        for _ in range(times):
+            yield Step(name, _BACK_WITHIN_S, (source,), partial(robot.broken, name), round=HANGS,
+                       returned=recovery.returns(source, robot.topics[_VICTIM], _BACK_WITHIN_S))
+        yield from _at_random(robot, seed, minutes, AT_RANDOM, _CRASH_RESPAWNED_S)
+
+    restarts = recovery.RestartListener()
+    command = recovery.command(folder / 'rules.yaml', list(robot.topics))
+    return Plan(robot, EVENTS, learning, steps(), recovery.HEALED_S, _AT_RANDOM_QUIET_WITHIN_S,
+                beside=[command], also=restarts.rows)
+
+
+def drawn(possible: Sequence[str], seed: int) -> Iterator[Tuple[str, float, float]]:
+    """Yield faults without an end, the same for the same seed.
+
+    Each is its name, time of normal operation before it [s], and how long it lasts [s].
+
+    Args:
+        possible: their names.
+        seed: any.
+    """
+    chance = random.Random(f'{seed}/faults')
+    hangs = [name for name in possible if name.startswith(f'{HANG}:')]
+    while True:
+        after_s = round(chance.uniform(*PAUSE_S), 1)
+        if chance.random() < _SHARE_OF_SHORT:
+            yield chance.choice(hangs), after_s, round(chance.uniform(*SHORT_S), 1)
+        else:
+            yield chance.choice(possible), after_s, round(chance.uniform(*LONG_S), 1)
+
+
+def _at_random(robot: FollowMe, seed: int, minutes: float, number: int = 1,
+               crash_s: float = LONG_S[1]) -> Iterator[Step]:
+    """Yield faults at random, with normal operation between them, for some time.
+
+    Args:
+        number: of the round.
+        crash_s: a node that was killed is dead for so long at most [s].
+    """
+    until = time.monotonic() + 60.0 * minutes
+    for name, after_s, lasts_s in drawn(robot.possible(), seed):
+        left_s = until - time.monotonic()
+        if after_s + lasts_s > left_s:
+            yield Step(NORMAL, max(1.0, left_s), is_normal=True, round=number)
+            return
+        yield Step(NORMAL, after_s, is_normal=True, round=number)
+        yield Step(name, min(lasts_s, crash_s) if name.startswith(CRASH) else lasts_s,
+                   robot.culprits(name), partial(robot.broken, name), round=number)
+
+
+def _pieces(length_s: float) -> Iterator[float]:
+    while length_s > 0.0:
+        yield min(length_s, _PIECE_S)
+        length_s -= _PIECE_S

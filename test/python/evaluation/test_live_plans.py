@@ -1,0 +1,166 @@
+"""The plans of live sessions, and how a session walks through one, without a master."""
+from __future__ import annotations
+
+import contextlib
+import itertools
+import time
+from pathlib import Path
+from typing import Any, Iterator, List
+
+import numpy as np
+import pytest
+import rosbag
+
+from self_awareness_evaluation.families.protocol import Learning
+from self_awareness_evaluation.live import drivers, plans, session, usage
+from self_awareness_evaluation.live.follow_me import CRASH, DOUBLE, HALF, HANG, FollowMe
+from self_awareness_evaluation.live.measures import ERROR, Status
+from self_awareness_evaluation.live.packaged_nodes import (CAMERAS_HZ, FAULTS, HALF_RATE, LATE,
+                                                           NODES, RELAY)
+from self_awareness_evaluation.live.processes import Processes
+from self_awareness_evaluation.live.session import Plan, Step
+
+PAGES = Path(__file__).resolve().parents[3] / 'docs' / 'evaluation'
+
+
+def test_faults_are_those_of_the_seed() -> None:
+    robot = FollowMe(Processes(Path()), seed=1)
+    possible = robot.possible()
+    drawn = [list(itertools.islice(plans.drawn(possible, seed), 300)) for seed in (1, 1, 2)]
+    assert drawn[0] == drawn[1] != drawn[2]
+    assert {name.partition(':')[0] for name, _, _ in drawn[0]} == {CRASH, HANG, HALF, DOUBLE}
+    assert {name.partition(':')[2] for name, _, _ in drawn[0]} == set(robot.topics)
+    for name, after_s, lasts_s in drawn[0]:
+        low, high = plans.SHORT_S if lasts_s < 2.0 else plans.LONG_S
+        assert low <= lasts_s <= high and (lasts_s > 2.0 or name.startswith(HANG))
+        assert plans.PAUSE_S[0] <= after_s <= plans.PAUSE_S[1]
+        assert robot.culprits(name) == (f'/{name.partition(":")[2]}',)
+    assert 10 < sum(lasts_s < 2.0 for _, _, lasts_s in drawn[0]) < 100
+
+
+def test_a_round_has_each_fault_once(tmp_path: Path) -> None:
+    learning = Learning(1, 60.0, 1, 60.0)
+    steps = list(plans.live(2, learning, tmp_path, Processes(tmp_path)).steps)
+    assert [step.fault for step in steps if step.round == 1] == ['normal', *plans.FAULTS_S]
+    assert len(steps) == 2 * (1 + len(plans.FAULTS_S)) and all(step.reset for step in steps)
+    assert [step.culprits for step in steps if step.fault == 'cc1'] == [('/player',)] * 2
+
+
+def test_packaged_nodes_are_watched_in_pieces_and_then_broken(tmp_path: Path) -> None:
+    plan = plans.nodes(15.0, 2.0, Learning(1, 60.0, 1, 60.0), tmp_path, Processes(tmp_path))
+    steps = list(plan.steps)
+    assert [(step.fault, step.lasts_s) for step in steps if step.is_normal] == [
+        (plans.UNDISTURBED, 600.0), (plans.UNDISTURBED, 300.0), (plans.BURSTS, 120.0)]
+    assert [(step.fault, step.culprits) for step in steps if not step.is_normal] == [
+        (kind, (f'/{node}',) if node else ()) for kind, node, _ in FAULTS]
+    assert [step.reset for step in steps] == [not step.is_normal for step in steps]
+
+
+def test_names_are_unique_and_faults_are_of_nodes() -> None:
+    page = (PAGES / 'nodes.md').read_text(encoding='utf-8')
+    names = [node.name for node in NODES]
+    assert len(set(names)) == len(names)
+    assert {node.manager for node in NODES if node.manager} <= set(names)
+    packaged = [node for node in NODES if node is not RELAY]
+    assert f'\n{len(packaged)} nodes of Debian packages' in page
+    assert all(f'`{name}`' in page for name in names)
+    for kind, node, _ in FAULTS:
+        assert not node or node in names
+        if kind == HALF_RATE:
+            assert node in CAMERAS_HZ, 'others have no rate that can be set'
+        if kind == LATE:
+            assert node == RELAY.name
+
+
+def test_what_drivers_replay_is_made(tmp_path: Path) -> None:
+    drivers.write(tmp_path)
+    for node in NODES:
+        assert not node.file or (tmp_path / node.file).exists()
+        if node.package == 'rosbag':
+            with rosbag.Bag(str(tmp_path / node.file)) as bag:
+                assert set(bag.get_type_and_topic_info().topics) == set(node.topics)
+
+
+class Monitor:
+    """Has said every 10 ms what was wrong, and is reset."""
+
+    incidents = ()
+
+    def __init__(self) -> None:
+        self.resets = 0
+        self.wrong_from = self.wrong_to = float('inf')
+        self._begin = time.time() - 1.0
+
+    @property
+    def statuses(self) -> List[Status]:
+        """All so far."""
+        stamps = np.arange(self._begin, time.time(), 0.01)
+        return [Status(stamp, ERROR, False, suspects=('/a',), component='/a')
+                if self.wrong_from <= stamp <= self.wrong_to else Status(stamp, 0, False)
+                for stamp in stamps.tolist()]
+
+    def quiet_for(self) -> float:
+        """Return for how long there is no alarm [s]."""
+        return time.time() - max([each.stamp for each in self.statuses if each.level], default=0.0)
+
+    def reset_until_quiet(self) -> str:
+        """Be quiet."""
+        self.resets += 1
+        return 'twice'
+
+    @contextlib.contextmanager
+    def loud(self) -> Iterator[float]:
+        """Say that something is wrong, soon after it is so, and until it is undone."""
+        onset = time.time()
+        self.wrong_from = onset + 0.1
+        yield onset
+        self.wrong_to = time.time()
+
+
+@pytest.fixture(name='monitor')
+def _monitor(monkeypatch: pytest.MonkeyPatch) -> Monitor:
+    monkeypatch.setattr(session, 'process_id', lambda name: 1)
+    monkeypatch.setattr(session, 'AFTERMATH_S', 0.2)
+    monkeypatch.setattr(usage, 'look', lambda pid: usage.Usage(time.monotonic(), 1.0, 20.0, 5, 6))
+    return Monitor()
+
+
+def walk(monitor: Any, quiet_within_s: float) -> session.Walk:
+    """Return what takes steps beside a monitor."""
+    plan = Plan(FollowMe(Processes(Path()), 1), 'bags', Learning(1, 1.0, 1, 1.0), iter(()),
+                0.3, quiet_within_s)
+    return session.Walk(plan, monitor, {'expected': 0.5, 'watched': 1, 'components': 2})
+
+
+def returned() -> float:
+    """Return when the node was back."""
+    time.sleep(0.3)
+    return time.time()
+
+
+def test_a_fault_is_watched_until_its_alarm_is_over(monitor: Monitor) -> None:
+    steps = walk(monitor, 5.0)
+    row = steps.take(Step('killed', 9.0, ('/a',), monitor.loud, round=2, reset=True,
+                          returned=returned))
+    assert (row.fault, row.node, row.round, row.note, monitor.resets) == ('killed', 'a', 2,
+                                                                          'twice', 1)
+    assert row.latency_s == pytest.approx(0.105, abs=0.006) and row.lasted_s >= 0.3
+    assert row.back_s == pytest.approx(row.lasted_s - 0.105, abs=0.1)
+    assert row.recovered_s is not None and row.recovered_s >= row.lasted_s
+    assert row.cleared_s == 0.0 and row.end_component == '/a'
+    assert (row.memory_mb, row.threads, row.files, row.cpu) == (20.0, 5, 6, 0.0)
+    over = row.onset + row.recovered_s
+    row = steps.take(Step('normal', 0.2, is_normal=True))
+    assert row.onset == pytest.approx(over + 0.2), 'an alarm after the aftermath is a false one'
+    assert (row.alarms, row.expected, row.watched, row.components) == (0, 0.5, 1, 2)
+    assert steps.take(Step('normal', 0.1, is_normal=True)).onset > row.onset + 0.2
+    assert [each.fault for each in steps.stretches] == ['killed', 'normal', 'normal']
+    assert monitor.resets == 1
+
+
+def test_nobody_waits_where_the_plan_does_not_say_so(monitor: Monitor) -> None:
+    steps = walk(monitor, 0.0)
+    row = steps.take(Step('killed', 0.1, ('/a',), monitor.loud))
+    assert (row.recovered_s, row.cleared_s, row.back_s, monitor.resets) == (None, None, None, 0)
+    begin = time.time()
+    assert steps.take(Step('normal', 0.1, is_normal=True)).onset >= begin
