@@ -16,9 +16,9 @@ from self_awareness_evaluation.live.listeners import QUIET_S
 from self_awareness_evaluation.live.samples import Sample, of_system
 from self_awareness_evaluation.live.session import FAULTS_S, SessionPlan
 from self_awareness_evaluation.pages import written_by
-from self_awareness_evaluation.simulated import summary
-from self_awareness_evaluation.simulated.measures import NORMAL
-from self_awareness_evaluation.simulated.tables import percent, seconds, table
+from self_awareness_evaluation.figures import quantile
+from self_awareness_evaluation.records import NORMAL
+from self_awareness_evaluation.tables import percent, seconds, table
 from self_awareness_evaluation.systems import distinct
 
 LIVE = 'evidence'
@@ -58,7 +58,7 @@ a suspicion and no alarm.
 
 The other systems were not running: they judge the recording of the same session, having learned
 from the same training, with thresholds that a share of 0.001 of the calibration's windows falls
-below. They blame and alarm as in [simulated.md](simulated.md).
+below. They blame and alarm as in [research.md](research.md).
 
 The machine's load average at the beginning of normal operation was {low:.1f} to {high:.1f},
 the robot's own included.
@@ -149,7 +149,7 @@ def _latencies(values: Sequence[Optional[float]]) -> str:
     text = f'{len(raised)} of {len(values)}'
     if not raised:
         return text
-    return (f'{text}, {seconds(summary.quantile(values, 0.5))} ({min(raised):.2f} to '
+    return (f'{text}, {seconds(quantile(values, 0.5))} ({min(raised):.2f} to '
             f'{max(raised):.2f})')
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import List, Optional, Sequence, Tuple
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
-from self_awareness_evaluation.simulated.measures import NORMAL
+from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.systems import SystemAlarm
 
 ERROR, WARN = 2, 1

@@ -15,7 +15,7 @@ from self_awareness_evaluation.live.master import own_master
 from self_awareness_evaluation.live.passing import say, stretch, wait
 from self_awareness_evaluation.live.processes import LiveError, Processes, await_condition
 from self_awareness_evaluation.live.samples import Status, Stretch
-from self_awareness_evaluation.simulated.measures import NORMAL
+from self_awareness_evaluation.records import NORMAL
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Crash, Effect, Intruder, Silence, Starvation
 from self_awareness_follow_me.faults import effect_of

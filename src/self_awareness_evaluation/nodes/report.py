@@ -17,7 +17,7 @@ from self_awareness_evaluation.nodes.session import (BETWEEN_BURSTS_S, BURST_S, 
                                                      RECOVERED_WITHIN_S, SessionPlan)
 from self_awareness_evaluation.nodes.system import NODES, RELAY
 from self_awareness_evaluation.pages import written_by
-from self_awareness_evaluation.simulated.tables import table
+from self_awareness_evaluation.tables import table
 
 _NAME = 'nodes'
 _NONE = '–'

@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import List, Optional, Sequence
 
-from self_awareness_evaluation.simulated.measures import AFTERMATH_S
+from self_awareness_evaluation.rows import AFTERMATH_S
 from self_awareness_evaluation.soak.measures import MUST_BE_FOUND_S, Happened
 from self_awareness_evaluation.soak.schedule import CRASH, HANG
 

@@ -10,7 +10,7 @@ from self_awareness_evaluation.page_section import machine, write_section
 from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.recovery.measures import BACK_WITHIN_S, not_mended, of_healthy
 from self_awareness_evaluation.recovery.session import DELAY_S, Recovered, RecoveryPlan
-from self_awareness_evaluation.simulated.tables import table
+from self_awareness_evaluation.tables import table
 from self_awareness_evaluation.soak.measures import Happened
 
 SECTION = 'recovery'

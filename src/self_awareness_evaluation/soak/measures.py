@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
 from self_awareness_evaluation.live.samples import ERROR, Status
-from self_awareness_evaluation.simulated.measures import AFTERMATH_S
+from self_awareness_evaluation.rows import AFTERMATH_S
 
 MUST_BE_FOUND_S = 2.0
 """A fault that lasts for longer is missed if there is no alarm [s]."""

@@ -11,7 +11,7 @@ from typing import Any, Dict, List, Optional, Sequence
 from self_awareness.output_files import replacing
 from self_awareness_evaluation.page_section import machine, write_section
 from self_awareness_evaluation.pages import written_by
-from self_awareness_evaluation.simulated.tables import table
+from self_awareness_evaluation.tables import table
 from self_awareness_evaluation.soak import measures
 from self_awareness_evaluation.soak.measures import MUST_BE_FOUND_S, FalseAlarm, Found
 from self_awareness_evaluation.soak.memory import KB_PER_MB, WARM_UP_S, Usage, slope_mb_per_hour

@@ -16,7 +16,7 @@ from self_awareness_evaluation.live.processes import LiveError, Processes, await
 from self_awareness_evaluation.live.samples import (ERROR, WARN, Sample, Status, Stretch, measure,
                                                     measure_alarms)
 from self_awareness_evaluation.live.session import SessionPlan
-from self_awareness_evaluation.simulated.measures import NORMAL
+from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.systems import SystemAlarm
 
 ONSET = 1000.0

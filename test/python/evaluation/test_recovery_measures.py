@@ -9,7 +9,7 @@ from self_awareness_evaluation.recovery import report
 from self_awareness_evaluation.recovery.measures import (BACK_WITHIN_S, Blamed, Hang, Restart,
                                                          not_mended, of_healthy)
 from self_awareness_evaluation.recovery.session import DELAY_S, Recovered, RecoveryPlan
-from self_awareness_evaluation.simulated.measures import AFTERMATH_S
+from self_awareness_evaluation.rows import AFTERMATH_S
 from self_awareness_evaluation.soak.measures import MUST_BE_FOUND_S, Happened
 
 PLAN = RecoveryPlan(2, 5.0, 1, 10.0, 90.0)
