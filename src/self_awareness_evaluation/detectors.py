@@ -2,19 +2,18 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
+from typing import AbstractSet, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, Alarm, DetectorParameters,
-                            EncodingRules, EventType, EvidenceModel, Learner, PaperModel,
-                            Recording, TrainedModel, Training, Tuning, Verdicts,
+                            EncodingRules, EventType, EvidenceModel, Learner, Occurrence,
+                            PaperModel, TrainedModel, Training, Tuning, Verdicts, fold_incidents,
                             judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
-from self_awareness.judging import EVIDENCE, PAPER
-from self_awareness_evaluation.systems import (Judged, SystemAlarm, common_threshold, distinct,
-                                               required)
+from self_awareness_evaluation.systems import (ALARM, Judged, SystemAlarm, common_threshold,
+                                               distinct, required)
 from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness_follow_me.scenario import load_scenario
 
@@ -31,7 +30,10 @@ class Paper:
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
-        trained = counted(recordings, PAPER)
+        training = Training(EncodingRules(), window=DEFAULT_WINDOW, paper=True)
+        for recording in recordings:
+            training.add_events(recording.event_types, recording.stamps, recording.ids)
+        trained = training.model(watch=False)
         self._types = trained.event_types
         self._model = PaperModel(trained)
 
@@ -45,7 +47,8 @@ class Paper:
         """Judge a recording."""
         encoded = recording.encoded(self._types)
         verdicts = self._verdicts(encoded)
-        return _judged(encoded, verdicts, required(self._threshold, self.name, 'calibrate'))
+        return judged_of(verdicts, encoded.event_types,
+                         required(self._threshold, self.name, 'calibrate'))
 
     def _verdicts(self, encoded: WindowedEvents) -> Verdicts:
         # - 1, because the window in which the recording ends is the last one.
@@ -55,7 +58,7 @@ class Paper:
 
 
 class Evidence:
-    """The evidence detector (`detector: evidence`). What it learned can be handed over by pickle.
+    """The evidence detector (`detector: evidence`).
 
     Args:
         graph: publisher, topic and subscriber, as the model holds it after a training while the
@@ -83,10 +86,6 @@ class Evidence:
         trained = learner.learn()
         for recording in recordings:
             trained.add_subscriptions(_lasting(recording))
-        self.take(trained)
-
-    def take(self, trained: TrainedModel) -> None:
-        """Judge by a model that was learned elsewhere."""
         self._trained = trained
         self._model = EvidenceModel(trained)
 
@@ -103,8 +102,9 @@ class Evidence:
     def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
         trained: TrainedModel = required(self._trained, self.name, 'train')
-        return _judged(recording.encoded(trained.event_types),
-                       self.verdicts(recording, DetectorParameters()), EVIDENCE_THRESHOLD)
+        return judged_of(self.verdicts(recording, DetectorParameters()),
+                         recording.encoded(trained.event_types).event_types, EVIDENCE_THRESHOLD,
+                         trained.graph)
 
     @property
     def expected_per_hour(self) -> float:
@@ -132,14 +132,6 @@ class Evidence:
                                  waiting=list(encoded.waiting),
                                  attributes=encoded.attributes)
 
-    def __getstate__(self) -> Dict[str, Any]:
-        return {**self.__dict__, '_model': None}
-
-    def __setstate__(self, state: Dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        if self._trained is not None:
-            self.take(self._trained)
-
 
 def _lasting(recording: WindowedEvents) -> Set[Tuple[str, str]]:
     """Return what nodes of a recording subscribe to all the time; empty: it is not known."""
@@ -147,31 +139,47 @@ def _lasting(recording: WindowedEvents) -> Set[Tuple[str, str]]:
     return set.intersection(*states) if states else set()
 
 
-def counted(recordings: Sequence[WindowedEvents], detector: str = EVIDENCE) -> TrainedModel:
-    """Return what a detector counts in recordings. Counts add up; watch() what they come to."""
-    training = Training(EncodingRules(), window=DEFAULT_WINDOW, evidence=detector == EVIDENCE,
-                        paper=detector == PAPER)
-    for recording in recordings:
-        said = Recording()
-        said.fingerprint = recording.fingerprint
-        said.robot = recording.robot
-        said.start, said.end = int(recording.stamps[0]), int(recording.stamps[-1])
-        said.events = len(recording.stamps)
-        training.add_events(recording.event_types, recording.stamps, recording.ids, said,
-                            attributes=recording.attributes)
-    return training.model(watch=False)
+def judged_of(verdicts: Verdicts, event_types: Sequence[EventType], threshold: float,
+              graph: AbstractSet[Tuple[str, str, str]] = frozenset()) -> Judged:
+    """Return what one of the package's detectors says of a recording as all systems do.
 
+    Args:
+        verdicts: on all windows.
+        event_types: by id.
+        threshold: a score below it is abnormal.
+        graph: see Evidence.
+    """
+    incidents = incidents_of([*verdicts.alarms, *verdicts.suspicions], graph)
 
-def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:
     def told(found: Sequence[Alarm]) -> List[SystemAlarm]:
         return [SystemAlarm(alarm.begin, alarm.end, alarm.over,
-                            distinct([encoded.event_types[suspect.id].source
-                                      for suspect in alarm.suspects]), alarm.evidence)
+                            distinct([event_types[suspect.id].source
+                                      for suspect in alarm.suspects]), alarm.evidence,
+                            alarm.level, alarm.culprit, alarm.kind, incidents.get(alarm.id))
                 for alarm in found]
 
     return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
                   verdicts.settling, told(verdicts.alarms), threshold, verdicts.suspicion,
                   told(verdicts.suspicions))
+
+
+def incidents_of(found: Iterable[Alarm], graph: AbstractSet[Tuple[str, str, str]]
+                 ) -> Dict[int, Tuple[int, int, bool]]:
+    """Return by the id of each alarm and suspicion when its incident begins and ends [ns], and
+    whether that is over; graph: see Evidence."""
+    by_id = {each.id: each for each in sorted(found, key=lambda each: each.begin)}
+    occurrences = [Occurrence(
+        each.id, each.level == ALARM, each.begin, each.end, each.kind, each.culprit,
+        [(suspect.component, suspect.abnormal, None, suspect.reason.kind == 'stranger')
+         for suspect in (*each.suspects, *each.later)],
+        [] if each.silent is None else each.silent.hosts) for each in by_id.values()]
+    spans = {}
+    for incident in fold_incidents(occurrences, set(graph)):
+        of_it = [by_id[id_] for id_ in incident.ids]
+        span = (min(each.begin for each in of_it), max(each.end for each in of_it),
+                all(each.over for each in of_it))
+        spans.update(dict.fromkeys(incident.ids, span))
+    return spans
 
 
 def scenario_graph() -> Set[Tuple[str, str, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 import argparse
 import os
 from pathlib import Path
-from typing import Sequence
+from typing import Iterable, Sequence
 
 from self_awareness.commands import cli
 from self_awareness_evaluation.families.protocol import MOST_STARTS
@@ -16,14 +16,22 @@ def add_output(parser: argparse.ArgumentParser, written: str) -> None:
                         metavar='DIR', help=f'where {written} go (default: docs/evaluation)')
 
 
-def add_robots(parser: argparse.ArgumentParser, families: Sequence[str]) -> None:
-    """Add the options that say which robots of which families there are."""
-    parser.add_argument('--families', nargs='+', choices=families, default=list(families),
-                        metavar='FAMILY', help='evaluate robots of these only: '
-                        f'{", ".join(families)} (default: all)')
-    parser.add_argument('--robots', type=cli.count, default=3, metavar='N',
-                        help='robots of each family, each with the next seed (default: 3)')
-    parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
+def add_families(parser: argparse.ArgumentParser, names: Iterable[str],
+                 default: Sequence[str]) -> None:
+    """Add the option that says of which families there are robots."""
+    parser.add_argument('--families', nargs='+', choices=list(names), default=default,
+                        metavar='FAMILY', help=f'robots of these: {", ".join(names)} '
+                        f'(default: {" ".join(default)})')
+
+
+def add_learning(parser: argparse.ArgumentParser, default: Sequence[int], told: str = '') -> None:
+    """Add the options that say what is learned from; told: how starts take turns."""
+    parser.add_argument('--starts', type=starts, nargs='+', default=default, metavar='N',
+                        help=f'starts to train on, in turn{told}; half as many, but one at least, '
+                        f'are calibrated on (default: {" ".join(map(str, default))})')
+    for option, what in (('--training', 'train'), ('--calibration', 'calibrate')):
+        parser.add_argument(option, type=calibration_s, default=150.0, metavar='S',
+                            help=f'length of a recording to {what} on [s] (default: 150)')
 
 
 def add_jobs(parser: argparse.ArgumentParser, what: str) -> None:
@@ -38,15 +46,6 @@ def calibration_s(text: str) -> float:
     value = float(text)
     if not 10.0 <= value <= 86400.0:
         raise ValueError(f'expected seconds from 10 to 86400, not {text}')
-    return value
-
-
-@cli.checked
-def share(text: str) -> float:
-    """Argument type: a share below 1."""
-    value = float(text)
-    if not 0.0 <= value < 1.0:
-        raise ValueError(f'expected a share from 0 to less than 1, not {text}')
     return value
 
 

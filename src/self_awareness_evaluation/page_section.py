@@ -28,3 +28,23 @@ def write_section(page: Path, name: str, text: str) -> None:
     with replacing(str(page)) as temporary:
         Path(temporary).write_text(f'{before}{opening}\n{text}\n{closing}{after}',
                                    encoding='utf-8')
+
+
+def put_section(page: Path, name: str, title: str, text: str) -> None:
+    """Write a section of a page as write_section() does; a page that lacks it gets it at its end.
+
+    Args:
+        page: is made if it is not there.
+        name: of the section.
+        title: of the heading that it gets on a page that lacks it.
+        text: of the section.
+
+    Raises:
+        OSError: the page cannot be read or written.
+    """
+    told = page.read_text(encoding='utf-8') if page.is_file() else '# Measured\n'
+    if f'<!-- {name} -->' not in told:
+        with replacing(str(page)) as temporary:
+            Path(temporary).write_text(
+                f'{told}\n## {title}\n\n<!-- {name} -->\n<!-- /{name} -->\n', encoding='utf-8')
+    write_section(page, name, text)

@@ -5,12 +5,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Dict, List
 
+from self_awareness_evaluation.sections import families, own_robot
+from self_awareness_evaluation.sections.page import RESEARCH
+
 SECTION = 'measured'
 """Name of the README's section that holds them."""
 
 _SYSTEM = 'evidence'
-_SIMULATED = 'evaluation/simulated.md'
-_FAMILIES = 'evaluation/families.md'
+_PAGE = f'evaluation/{RESEARCH}'
+_OWN = own_robot.TITLE
+_FAMILIES = families.TITLE
 
 
 @dataclass(frozen=True)
@@ -33,23 +37,10 @@ class Number:
 
 
 NUMBERS = [
-    Number('a node dies (86 Hz)', _SIMULATED, 'Alarms', 'crash:motors', _SYSTEM),
-    Number('a node dies (often silent)', _SIMULATED, 'Alarms', 'crash:face_detection', _SYSTEM),
-    Number('any node dies', _SIMULATED, 'Alarms', 'every crash', _SYSTEM),
-    Number('all nodes fall silent', _SIMULATED, 'Alarms', 'silence', _SYSTEM),
-    Number('other programs take the CPU', _SIMULATED, 'Alarms', 'rs', _SYSTEM),
-    Number('a node sends at half its rate', _SIMULATED, 'Alarms', 'half:player', _SYSTEM),
-    Number('a node sends at double its rate', _SIMULATED, 'Alarms', 'double:gaze_control',
-           _SYSTEM),
-    Number('a node answers 60 ms later (subscribers known)', _SIMULATED, 'Alarms', 'lat', _SYSTEM),
-    Number('a node publishes two topics in another order', _SIMULATED, 'Alarms', 'order',
-           _SYSTEM),
-    Number('the clock of a computer drifts now and then', _SIMULATED, 'Alarms', 'ac', _SYSTEM),
-    Number('stamps stand still', _SIMULATED, 'Alarms', 'stale:slam', _SYSTEM),
-    Number('false alarms an hour (95 %)', _SIMULATED, 'Targets',
-           'the same, with the time before the faults', _SYSTEM),
-    Number('the same, on robots of other kinds, learned from 4 starts', _FAMILIES, '', 'all',
-           'false alarms/h, 4 starts'),
+    *(Number(what, _PAGE, _OWN, fault, _SYSTEM) for fault, what in own_robot.TOLD.items()),
+    Number('false alarms an hour (95 %)', _PAGE, _OWN, own_robot.FALSE_ALARMS, _SYSTEM),
+    Number('the same, on robots of other kinds, learned from 4 starts', _PAGE, _FAMILIES,
+           families.ALL, 'false alarms/h, 4 starts'),
 ]
 
 

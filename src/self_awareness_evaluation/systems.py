@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import List, Optional, Protocol, Sequence, Set, TypeVar, runtime_checkable
+from typing import (List, Optional, Protocol, Sequence, Set, Tuple, TypeVar,
+                    runtime_checkable)
 
 import numpy as np
 
@@ -10,6 +11,12 @@ from self_awareness import DEFAULT_WINDOW, DetectorParameters, Persistence, Roc
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 _Value = TypeVar('_Value')
+
+ALARM, SUSPICION = 'ERROR', 'WARN'
+"""Levels, as diagnostics call them."""
+
+EXCUSES = ('busy machine', 'all silent', 'new mode')
+"""Kinds of alarms that are no node's fault."""
 
 FALSE_POSITIVE_RATE = 0.001
 """The share of normal windows of the calibration that may score below the threshold."""
@@ -26,6 +33,11 @@ class SystemAlarm:
         suspects: sources that the alarm is blamed on when it is raised, best first, each once;
             None if the system names no suspects.
         evidence: what raised it, in words; empty if the system does not say.
+        level: ALARM or SUSPICION.
+        culprit: who is to blame when it ends; empty: nobody, or the system does not say.
+        kind: what is wrong by then; empty if the system does not say.
+        incident: begin and end [ns] of the incident that it belongs to, and whether that is over;
+            None: it is one of its own.
     """
 
     start: int
@@ -33,6 +45,20 @@ class SystemAlarm:
     cleared: bool
     suspects: Optional[List[str]]
     evidence: str = ''
+    level: str = ALARM
+    culprit: str = ''
+    kind: str = ''
+    incident: Optional[Tuple[int, int, bool]] = None
+
+    def stands_at(self, time: int) -> bool:
+        """Return whether it stands at a time [ns]."""
+        return self.start <= time and (time < self.end or not self.cleared)
+
+    def shifted(self, time: int) -> SystemAlarm:
+        """Return the same that much later [ns]."""
+        incident = self.incident and (self.incident[0] + time, self.incident[1] + time,
+                                      self.incident[2])
+        return replace(self, start=self.start + time, end=self.end + time, incident=incident)
 
 
 @dataclass(frozen=True)
@@ -155,14 +181,21 @@ class ScoringSystem:
         alarms = []
         for alarm in persistent(start, abnormal & ~unsettled):
             raised_in = int((alarm.start - start[0]) // DEFAULT_WINDOW) - 1
-            alarms.append(replace(alarm, suspects=self._scorer.suspects(recording, raised_in)))
+            suspects = self._scorer.suspects(recording, raised_in)
+            alarms.append(replace(alarm, suspects=suspects, culprit=(suspects or [''])[0]))
         return Judged(start, abnormal, score, unsettled, alarms, threshold)
 
 
-def watched_by(system: System, components: Set[str]) -> Optional[int]:
-    """Return how many of the components a system watches; None: it judges all together."""
+def watched_of(system: System) -> Optional[Set[str]]:
+    """Return the components that a system watches; None: it judges all together."""
     of = system.scorer if isinstance(system, ScoringSystem) else system
-    return len(of.watched & components) if isinstance(of, Watching) else None
+    return of.watched if isinstance(of, Watching) else None
+
+
+def watched_by(system: System, components: Set[str]) -> Optional[int]:
+    """Return how many of the components a system watches, likewise."""
+    watched = watched_of(system)
+    return None if watched is None else len(watched & components)
 
 
 def required(value: Optional[_Value], name: str, step: str) -> _Value:

@@ -6,9 +6,9 @@ from typing import Sequence, Tuple
 
 from self_awareness import Tuning
 from self_awareness.commands import cli
+from self_awareness_evaluation.catalogue import EVIDENCE
 
-EVIDENCE = ('evidence', 'evidence_no_graph')
-"""The systems whose method can be changed."""
+WITHOUT, BETWEEN = 'without ', '; '
 
 OFF = 'off'
 """As a value: the one that switches the rule off."""
@@ -27,32 +27,43 @@ def add(parser: argparse.ArgumentParser) -> None:
                         f'as `info --tuning` lists them; {OFF} as a value switches a rule off')
 
 
-def of(arguments: argparse.Namespace) -> Tuning:
-    """Return the method that the arguments of add() ask for."""
-    return changed(arguments.set, arguments.without)
+def of(arguments: argparse.Namespace) -> str:
+    """Return what the arguments of add() change."""
+    return BETWEEN.join([*(told(name, value) for name, value in arguments.set),
+                         *(f'{WITHOUT}{channel}' for channel in arguments.without)])
 
 
-def changed(changes: Sequence[Change], without: Sequence[str]) -> Tuning:
-    """Return the method with numbers changed and channels left out.
+def told(name: str, value: float) -> str:
+    """Return how a changed number is written."""
+    return f'{name}={value:.10g}'
+
+
+def tuning_of(change: str) -> Tuning:
+    """Return the method with a change.
+
+    Args:
+        change: `NAME=VALUE` and `without CHANNEL`, several with BETWEEN between; empty: none.
 
     Raises:
         ValueError: there is no such number or channel, or the value is out of its range.
     """
     tuning = Tuning()
-    for name, value in changes:
-        tuning.set(name, value)
-    for channel in without:
-        tuning.leave_out(channel)
+    for each in change.split(BETWEEN) if change else []:
+        if each.startswith(WITHOUT):
+            tuning.leave_out(each[len(WITHOUT):])
+        else:
+            name, _, value = each.partition('=')
+            tuning.set(name, float(value))
     return tuning
 
 
-def check_used(tuning: Tuning, systems: Sequence[str]) -> None:
+def check_used(change: str, systems: Sequence[str]) -> None:
     """Check that a method that was changed belongs to a system that is evaluated.
 
     Raises:
         ValueError: none of the systems judges by it.
     """
-    if tuning != Tuning() and not set(EVIDENCE) & set(systems):
+    if change and not set(EVIDENCE) & set(systems):
         raise ValueError(f'--set, --without: they change {" and ".join(EVIDENCE)} only, and none '
                          f'of them is evaluated; add one to --systems')
 

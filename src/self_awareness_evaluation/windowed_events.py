@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import dataclass, replace
-from typing import Callable, Dict, FrozenSet, Hashable, List, Optional, Sequence, Tuple, TypeVar
+from typing import Callable, Dict, FrozenSet, Hashable, Optional, Sequence, Tuple, TypeVar
 
 import numpy as np
 
@@ -63,42 +63,6 @@ class WindowedEvents:
         first = int(self.stamps[0]) // DEFAULT_WINDOW * DEFAULT_WINDOW
         return np.arange(first, self.end, DEFAULT_WINDOW, dtype=np.int64)
 
-    def window_of_events(self) -> np.ndarray:
-        """Return the index of every event's window."""
-        return (self.stamps - int(self.starts()[0])) // DEFAULT_WINDOW
-
-    def beginning(self, share: float) -> WindowedEvents:
-        """Return the first share of the recording, 0 < share <= 1."""
-        first = int(self.stamps[0])
-        end = first + round((self.end - first) * share)
-        inside = self.stamps < end
-        return replace(
-            self, stamps=self.stamps[inside], ids=self.ids[inside], end=end,
-            attributes=None if self.attributes is None else self.attributes[inside],
-            subscriptions=[each for each in self.subscriptions if each[0] < end],
-            waiting=[each for each in self.waiting if each.end <= end])
-
-
-def vocabulary(recordings: Sequence[WindowedEvents]) -> List[EventType]:
-    """Return all event types of recordings, in the order of their first occurrence."""
-    types: Dict[EventType, None] = {}
-    for recording in recordings:
-        types.update(dict.fromkeys(recording.event_types[id_]
-                                   for id_ in dict.fromkeys(recording.ids.tolist())))
-    return list(types)
-
-
-def known_ids(recording: WindowedEvents, types: Sequence[EventType]) -> np.ndarray:
-    """Return the ids of the events among types, int64; len(types) stands for all others."""
-    return np.minimum(recording.encoded(types).ids, len(types)).astype(np.int64)
-
-
-def counts(recording: WindowedEvents, types: Sequence[EventType]) -> np.ndarray:
-    """Return the events of every window by type, [window, id]; the last column: all others."""
-    table = np.zeros((len(recording.starts()), len(types) + 1))
-    np.add.at(table, (recording.window_of_events(), known_ids(recording, types)), 1.0)
-    return table
-
 
 def stamps_by(recording: WindowedEvents, key: Callable[[EventType], _Key]
               ) -> Dict[_Key, np.ndarray]:
@@ -106,12 +70,6 @@ def stamps_by(recording: WindowedEvents, key: Callable[[EventType], _Key]
 
     What no event has is not in it.
     """
-    return values_by(recording, key, recording.stamps)
-
-
-def values_by(recording: WindowedEvents, key: Callable[[EventType], _Key],
-              values: np.ndarray) -> Dict[_Key, np.ndarray]:
-    """Return values, one for each event, likewise."""
     keys: Dict[_Key, int] = {}
     numbers = [keys.setdefault(key(event_type), len(keys))
                for event_type in recording.event_types]
@@ -119,5 +77,5 @@ def values_by(recording: WindowedEvents, key: Callable[[EventType], _Key],
     of_events = np.array(numbers, dtype=np.min_scalar_type(len(keys)))[recording.ids]
     order = np.argsort(of_events, kind='stable')
     edges = np.searchsorted(of_events[order], np.arange(len(keys) + 1))
-    return {known: values[order[begin:end]]
+    return {known: recording.stamps[order[begin:end]]
             for known, begin, end in zip(keys, edges, edges[1:]) if end > begin}

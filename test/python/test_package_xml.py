@@ -49,7 +49,7 @@ OPTIONAL = {
     'distributed',          # train --scheduler
     'plotly',               # score --report; rosdep has no key
     'selenium',             # the test of the report in a browser
-    'dynamic_reconfigure', 'hmmlearn', 'sklearn',  # the evaluation, which is not installed
+    'dynamic_reconfigure',  # the evaluation, which is not installed
 }
 OF_THE_BUILD = {'catkin', 'message_generation', 'message_runtime', 'python3-setuptools',
                 'python3-pytest-xdist', 'rosbash'}

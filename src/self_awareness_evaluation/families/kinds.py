@@ -2,118 +2,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, Dict, List, Optional, Set, Tuple
+from typing import Callable, Dict, Optional
 
 import numpy as np
 
 from self_awareness_evaluation.families.conditions import Activity, Conditions
-from self_awareness_evaluation.families.emissions import (Answer, Emission, Feedback, Sporadic,
-                                                          Timer, TwoRates)
+from self_awareness_evaluation.families.draft import (FASTEST_CHAIN_HZ, MOST_OF_PERIOD, RATES_HZ,
+                                                      Draft, Timing, add_task,
+                                                      add_timers_and_chains)
+from self_awareness_evaluation.families.emissions import (Answer, Feedback, Sporadic, Timer,
+                                                          TwoRates)
 from self_awareness_evaluation.families.robot import CRASH, Fault, Output, Robot
 
-RATES_HZ = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 30.0, 50.0, 100.0)
-"""Usual rates."""
-
-_CHAINS = 7
-_FASTEST_CHAIN_HZ = 30.0
-_SHORTEST_ANSWER_S, _LONGEST_ANSWER_S = 0.003, 0.04
-_MOST_OF_PERIOD = 0.4  # an answer takes no longer, so that its component keeps up
-_COPY_S = 0.0005
 _HOLE_S = 6.0
 _HEAD_OR_TAIL_S = (6.0, 20.0)
-
-
-@dataclass(frozen=True)
-class Timing:
-    """How the timers of a robot keep time; see Timer. Each clock is off by up to `ppm`."""
-
-    variation: float = 0.0
-    ppm: float = 0.0
-    wander: float = 0.0
-    loops: bool = False
-
-
-class Draft:
-    """A robot while it is drawn: outputs are added one by one.
-
-    Args:
-        rng: draws.
-        timing: of all timers.
-        namespace: put before all names, like `/robot1`; or empty.
-    """
-
-    def __init__(self, rng: np.random.Generator, timing: Timing = Timing(),
-                 namespace: str = '') -> None:
-        self.rng = rng
-        self.outputs: List[Output] = []
-        self.activities: Dict[str, Activity] = {}
-        self.subscriptions: Set[Tuple[str, str]] = set()
-        self.namespace = namespace
-        self._timing = timing
-        self._clocks: Dict[str, float] = {}
-
-    def robot(self, seed: int, conditions: Conditions = Conditions(),
-              far: Tuple[str, ...] = ()) -> Robot:
-        """Return the robot."""
-        return Robot(seed, tuple(self.outputs), conditions, self.activities,
-                     frozenset(self.subscriptions), frozenset(far))
-
-    def add(self, name: str, topic: str, datatype: str, emission: Emission) -> int:
-        """Add an output of the component of that name, and return its index."""
-        source = f'{self.namespace}/{name}'
-        self.outputs.append(Output(source, f'{source}/{topic}', datatype, emission))
-        return len(self.outputs) - 1
-
-    def add_timer(self, name: str, rate_hz: float, topic: str = 'data', activity: str = '') -> int:
-        """Add an output with a timer."""
-        timing = self._timing
-        ppm = self._clocks.setdefault(name, self.rng.uniform(-timing.ppm, timing.ppm))
-        return self.add(name, topic, 'sensor_msgs/PointCloud2', Timer(
-            1.0 / rate_hz, variation=timing.variation, ppm=ppm, wander=timing.wander,
-            loop=timing.loops and self.rng.uniform() < 0.5, activity=activity))
-
-    def add_answer(self, name: str, trigger: int, longest_s: float, topic: str = 'result',
-                   activity: str = '', every: int = 1, share: float = 1.0) -> int:
-        """Add an output that answers within some milliseconds."""
-        longest = max(_SHORTEST_ANSWER_S, min(_LONGEST_ANSWER_S, longest_s))
-        delay = float(np.exp(self.rng.uniform(np.log(_SHORTEST_ANSWER_S), np.log(longest))))
-        return self.add(name, topic, 'geometry_msgs/PoseStamped', Answer(
-            trigger, delay, self.rng.uniform(0.05, 0.25), every, share, activity))
-
-    def add_copies(self, index: int, number: int) -> None:
-        """Let the component of an output publish further topics right after it."""
-        name = self.outputs[index].source[len(self.namespace) + 1:]
-        for copy in range(number):
-            self.add(name, f'{self.outputs[index].topic.rsplit("/", 1)[-1]}_info{copy}',
-                     'sensor_msgs/CameraInfo', Answer(index, _COPY_S * (copy + 1), 0.3))
-
-    def add_chain(self, name: str, begin: int, rate_hz: float, length: int) -> List[int]:
-        """Add components that answer each to the one before, and return their outputs."""
-        chain = []
-        for link in range(length):
-            begin = self.add_answer(f'{name}_{link + 1}', begin, _MOST_OF_PERIOD / rate_hz)
-            chain.append(begin)
-        return chain
-
-    def listen(self, number: int) -> None:
-        """Let every component with a timer subscribe to some others that it does not answer to."""
-        sources = sorted({output.source for output in self.outputs})
-        for output in self.outputs:
-            if isinstance(output.emission, Timer):
-                for publisher in self.rng.choice(sources, int(self.rng.integers(0, number + 1))):
-                    if publisher != output.source:
-                        self.subscriptions.add((str(publisher), output.source))
-
-
-def add_timers_and_chains(draft: Draft, more: int = 4) -> None:
-    """Add a timer of every usual rate, some more, and chains of answers after some of them."""
-    rates = [*RATES_HZ, *draft.rng.choice(RATES_HZ, more).tolist()]
-    timers = [draft.add_timer(f'driver{number}', rate) for number, rate in enumerate(rates)]
-    slow = [number for number, rate in enumerate(rates) if rate <= _FASTEST_CHAIN_HZ]
-    for chain, number in enumerate(draft.rng.choice(slow, _CHAINS, replace=False).tolist()):
-        draft.add_chain(f'filter{chain}', timers[number], rates[number],
-                        int(draft.rng.integers(1, 4)))
-    draft.listen(2)
+_CLOCKS_PPM = 50.0
+_ARM_HZ = 50.0
+_WATCHED = 1000  # the robot of a fleet that is watched
 
 
 def _timers(timing: Timing = Timing(), conditions: Conditions = Conditions()
@@ -221,17 +126,6 @@ def _events_only(seed: int) -> Robot:
     return draft.robot(seed)
 
 
-def add_task(draft: Draft, name: str, trigger: int, activity: str = '') -> None:
-    """Add a component that answers within 0.1 to 4 s; half of them tell how they get on."""
-    delay = float(np.exp(draft.rng.uniform(np.log(0.1), np.log(2.5))))
-    spread = draft.rng.uniform(0.05, 0.15)
-    result = draft.add(name, 'result', 'move_base_msgs/MoveBaseActionResult',
-                       Answer(trigger, delay, spread, activity=activity))
-    if draft.rng.uniform() < 0.5:
-        draft.add(name, 'feedback', 'move_base_msgs/MoveBaseActionFeedback',
-                  Feedback(result, delay / draft.rng.uniform(2.0, 6.0)))
-
-
 def _bursty(seed: int) -> Robot:
     draft = Draft(np.random.default_rng(seed))
     rng = draft.rng
@@ -239,7 +133,7 @@ def _bursty(seed: int) -> Robot:
     rates = rng.choice((2.0, 5.0, 10.0, 20.0, 30.0, 50.0), timers).tolist()
     for number, rate in enumerate(rates):
         index = draft.add_timer(f'driver{number}', rate)
-        if rate <= _FASTEST_CHAIN_HZ and rng.uniform() < 0.6:
+        if rate <= FASTEST_CHAIN_HZ and rng.uniform() < 0.6:
             draft.add_chain(f'filter{number}', index, rate, int(rng.integers(1, 4)))
     triggers = [index for index, output in enumerate(draft.outputs) if output.topic.startswith(
         ('/driver', '/filter'))]
@@ -284,7 +178,7 @@ def _pausing_chains(seed: int) -> Robot:
         scan = draft.add_timer(f'laser{number}', rate)
         seen = f'seen{number}'
         draft.activities[seen] = Activity(rng.uniform(8.0, 40.0), rng.uniform(0.7, 8.0))
-        longest = _MOST_OF_PERIOD / rate
+        longest = MOST_OF_PERIOD / rate
         legs = draft.add_answer(f'legs{number}', scan, longest, 'legs', seen)
         tracker = draft.add_answer(f'tracker{number}', legs, longest, 'track',
                                    share=rng.uniform(0.985, 0.998))
@@ -343,6 +237,25 @@ def _of_one_make(seed: int, number: Optional[int] = None) -> Robot:
     return draft.robot(seed)
 
 
+def _of_fleet(seed: int, number: int = _WATCHED) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    add_timers_and_chains(draft)
+    if number % 2 == 0:
+        draft.add_chain('gripper', draft.add_timer('arm', _ARM_HZ), _ARM_HZ, 2)
+    own = np.random.default_rng((seed, number))
+    draft.add(f'sensor{number}', 'data', 'sensor_msgs/Temperature',
+              Timer(1.0 / float(own.choice(RATES_HZ))))
+    robot = draft.robot(seed)
+    return replace(robot, outputs=tuple(_with_clock(output, own) for output in robot.outputs))
+
+
+def _with_clock(output: Output, own: np.random.Generator) -> Output:
+    ppm = float(own.uniform(-_CLOCKS_PPM, _CLOCKS_PPM))
+    emission = output.emission
+    return (replace(output, emission=replace(emission, ppm=ppm))
+            if isinstance(emission, Timer) else output)
+
+
 def _hole(robot: Robot, number: int, seconds: float) -> Optional[Fault]:
     begin_s = (seconds - _HOLE_S) / 2.0
     return Fault(CRASH, robot.regular[0], begin_s, begin_s + _HOLE_S) if number == 0 else None
@@ -369,6 +282,9 @@ class Family:
         of_make: returns one of several robots of a make, by the seed and a number: each recording
             to learn from is of another one, and all that is watched of one more; None: there is
             one robot.
+        names_robots: the recordings to learn from say of which robot they are.
+        breaks_in: faults come while the robot is in all of its activities (True), or in none of
+            them (False), and stays so; None: while it changes.
     """
 
     told: str
@@ -377,11 +293,13 @@ class Family:
     watched_start: bool = False
     flaw: Callable[[Robot, int, float], Optional[Fault]] = lambda *_: None
     of_make: Optional[Callable[[int, int], Robot]] = None
+    names_robots: bool = False
+    breaks_in: Optional[bool] = None
 
 
 _STALLS = Conditions(stalls_an_hour=6.0)
 
-FAMILIES: Dict[str, Family] = {
+FAMILIES: Dict[str, Family] = {  # all families by name; more are added below
     'timers': Family('exact timers of 0.5 to 100 Hz, seven chains of answers', _timers()),
     'timers_drift': Family('the same, clocks that differ by up to 50 ppm',
                            _timers(Timing(ppm=50.0))),
@@ -428,7 +346,32 @@ FAMILIES: Dict[str, Family] = {
     'one_make': Family('timers; robots of one make with a node of their own each: learned from '
                        'some, watching another', _of_one_make, of_make=_of_one_make),
 }
-"""All families by name."""
+DEFAULT = tuple(FAMILIES)
+"""Those that are evaluated if no others are asked for: each with something of its own."""
+
+FAMILIES['fleet'] = Family(
+    'robots of one make, with clocks and a sensor of their own, every second one with an arm: '
+    'learned from some that are told apart, watching another', _of_fleet, of_make=_of_fleet,
+    names_robots=True)
+FAMILIES['fleet_own'] = Family('the robot of `fleet` that is watched, learned from itself',
+                               _of_fleet)
+
+MODES: Dict[str, bool] = {'active': True, 'idle': False}
+"""By name, whether a robot is in its activities."""
+
+
+def _in_mode(name: str, mode: str, alone: bool) -> Family:
+    family, is_active = FAMILIES[name], MODES[mode]
+    if alone:
+        return replace(family, told=f'`{name}`, always {mode}',
+                       draw=lambda seed: family.draw(seed).in_mode(is_active))
+    return replace(family, told=f'`{name}`, broken while it is {mode}', breaks_in=is_active)
+
+
+FAMILIES.update({
+    f'{name}_{mode}{"_alone" if alone else ""}': _in_mode(name, mode, alone)
+    for name in ('driving_docked', 'long_pauses', 'events_only', 'dialogue') for mode in MODES
+    for alone in (False, True)})
 
 
 def draw(family: str, seed: int) -> Robot:

@@ -1,7 +1,7 @@
 """What of a robot is recorded to learn from, to watch, and with which faults."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
@@ -11,6 +11,7 @@ from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LONGEST_START_S,
                                                       MISSES, RESTART, SILENT, STARVED, Fault,
                                                       Robot)
+from self_awareness_evaluation.records import FaultRecord, Learning
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 DEATH = 'death'
@@ -68,52 +69,6 @@ _FAULTS = _Section(10_000, 15_000.0, 200.0)
 _WATCHED = _Section(1000, 36_000.0, WATCHED_S)
 
 
-@dataclass(frozen=True)
-class Learning:
-    """What a system learns from.
-
-    Args:
-        starts: of the robot to train on, a recording of each.
-        training_s: length of each [s].
-        calibrations: further starts to calibrate on, a recording of each.
-        calibration_s: length of each [s].
-    """
-
-    starts: int
-    training_s: float
-    calibrations: int
-    calibration_s: float
-
-    @classmethod
-    def of(cls, starts: int, training_s: float, calibration_s: float) -> Learning:
-        """Return what is recorded by default: half as many starts to calibrate, at least one."""
-        return cls(starts, training_s, max(1, starts // 2), calibration_s)
-
-    def __str__(self) -> str:
-        return (f'{self.starts} x {self.training_s:g} s + '
-                f'{self.calibrations} x {self.calibration_s:g} s')
-
-
-@dataclass(frozen=True)
-class FaultRecord:
-    """A recording with a fault.
-
-    Args:
-        kind: one of KINDS.
-        source: the guilty component; empty: the robot.
-        recording: the events.
-        onset: of the fault [ns]; of a DEATH: when the first message would have come that is
-            missing.
-        back: when the component is back [ns]; None: it stays away, or never was.
-    """
-
-    kind: str
-    source: str
-    recording: WindowedEvents
-    onset: int
-    back: Optional[int] = None
-
-
 def check_hours(families: Sequence[str], hours: float) -> None:
     """Check that so many hours of normal operation can be watched.
 
@@ -133,19 +88,18 @@ class Records:
     Args:
         family: one of FAMILIES.
         seed: of the robot.
-        mode: the robot does all that it does at times all the time (True), or never (False);
-            None: at times. The rest of each start is the same.
     """
 
-    def __init__(self, family: str, seed: int, mode: Optional[bool] = None) -> None:
+    def __init__(self, family: str, seed: int) -> None:
         self._family = FAMILIES[family]
-        robot = self._family.draw(seed)
-        self.robot: Robot = robot if mode is None else robot.in_mode(mode)
+        self._learned = self._family.draw(seed)
+        mode = self._family.breaks_in
+        self.robot: Robot = self._learned if mode is None else self._learned.in_mode(mode)
 
     def training(self, learning: Learning) -> List[WindowedEvents]:
         """Return the recordings to train on."""
         return [self._recorded(_TRAINING, number, learning.training_s, self._family.one_start,
-                               self._family.flaw(self.robot, number, learning.training_s))
+                               self._family.flaw(self._learned, number, learning.training_s))
                 for number in range(learning.starts)]
 
     def calibration(self, learning: Learning) -> List[WindowedEvents]:
@@ -169,6 +123,8 @@ class Records:
     def faults(self, kinds: Tuple[str, ...], most: Optional[int] = None,
                after_death_s: float = AFTER_DEATH_S) -> Iterator[FaultRecord]:
         """Yield a recording of every fault of some kinds, of each component in turn.
+
+        The onset of a DEATH is when the first message would have come that is missing.
 
         Args:
             kinds: of KINDS.
@@ -207,7 +163,7 @@ class Records:
             if not len(missing) or missing[0] + nanoseconds(_MISSING_S) > recording.end:
                 return
             onset = int(missing[0])
-        yield FaultRecord(kind, source, recording, onset,
+        yield FaultRecord(kind, (source,) if source else (), recording, onset,
                           onset + nanoseconds(RESTARTS_IN_S) if kind == RESTART else None)
 
     def _lasts(self, kind: str, source: str, number: int, after_death_s: float) -> float:
@@ -223,18 +179,19 @@ class Records:
     def _recorded(self, section: _Section, number: int, seconds: float, one_start: bool,
                   fault: Optional[Fault] = None) -> WindowedEvents:
         robot = self._robot_of(section, number)
-        if one_start:
-            return robot.start(_ONE_START, seconds, fault,
-                               section.from_s + number * section.every_s)
-        return robot.start(section.first + number, seconds, fault)
+        start = _ONE_START if one_start else section.first + number
+        begin_s = section.from_s + number * section.every_s if one_start else 0.0
+        recording = robot.start(start, seconds, fault, begin_s)
+        is_known = self._family.names_robots and section in (_TRAINING, _CALIBRATION)
+        return replace(recording, robot=f'r{section.first + number}') if is_known else recording
 
     def _robot_of(self, section: _Section, number: int) -> Robot:
         """Return the robot of a recording: where there are several, that which is watched is none
         of those that are learned from."""
         of_make = self._family.of_make
         if of_make is None:
-            return self.robot
-        return of_make(self.robot.seed, _WATCHED.first if section in (_WATCHED, _FAULTS)
+            return self.robot if section == _FAULTS else self._learned
+        return of_make(self._learned.seed, _WATCHED.first if section in (_WATCHED, _FAULTS)
                        else section.first + number)
 
 

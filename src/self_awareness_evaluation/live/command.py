@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, Callable, Iterator, List, Optional, Seque
 from self_awareness import progress
 from self_awareness.commands import cli
 from self_awareness_evaluation import options, row_files
-from self_awareness_evaluation.families.protocol import Learning
 from self_awareness_evaluation.live import tables
 from self_awareness_evaluation.live.rows import Row
 from self_awareness_evaluation.page_section import machine, write_section
 from self_awareness_evaluation.pages import written_by
+from self_awareness_evaluation.records import Learning
 
 if TYPE_CHECKING:  # ROS is imported only where a session runs
     from self_awareness_evaluation.live.processes import Processes

@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import Dict, Iterator, Sequence, Tuple
 
-from self_awareness_evaluation.families.protocol import Learning
 from self_awareness_evaluation.live import recovery
 from self_awareness_evaluation.live.breaking import Bursts
 from self_awareness_evaluation.live.follow_me import CRASH, HANG, FollowMe
@@ -17,7 +16,9 @@ from self_awareness_evaluation.live.processes import Processes
 from self_awareness_evaluation.live.recordings import BAGS, EVENTS, SESSION, record_command
 from self_awareness_evaluation.live.reliability import AT_RANDOM, HANGS
 from self_awareness_evaluation.live.session import Plan, Step
-from self_awareness_evaluation.simulated.measures import AFTERMATH_S, NORMAL
+from self_awareness_evaluation.records import Learning
+from self_awareness_evaluation.records import NORMAL
+from self_awareness_evaluation.rows import AFTERMATH_S
 
 NORMAL_S = 20.0
 """Of `live`: normal operation at the beginning of each round [s]."""

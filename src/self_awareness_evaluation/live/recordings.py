@@ -7,10 +7,10 @@ from typing import List, Protocol
 
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.training.robot_graph import graph_file
-from self_awareness_evaluation.families.protocol import Learning
 from self_awareness_evaluation.live.listeners import STARTED_WITHIN_S
 from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition, say,
                                                       wait)
+from self_awareness_evaluation.records import Learning
 
 APART_S = 70.0
 """From the end of one bag to the beginning of the next one [s].

@@ -9,8 +9,8 @@ from self_awareness_evaluation.live.follow_me import CRASH, HANG
 from self_awareness_evaluation.live.recovery import DELAY_S
 from self_awareness_evaluation.live.rows import RESTARTED, Row
 from self_awareness_evaluation.live.usage import WARM_UP_S, slope_mb_per_hour
-from self_awareness_evaluation.simulated.measures import AFTERMATH_S
-from self_awareness_evaluation.simulated.tables import table
+from self_awareness_evaluation.rows import AFTERMATH_S
+from self_awareness_evaluation.tables import table
 
 HANGS, AT_RANDOM = 1, 2
 """Rounds of a recovery: a node hangs again and again; faults at random."""

@@ -12,7 +12,6 @@ import yaml
 
 from self_awareness import TrainedModel
 from self_awareness.calibration.limits import BUDGET
-from self_awareness_evaluation.families.protocol import Learning
 from self_awareness_evaluation.live import usage
 from self_awareness_evaluation.live.breaking import nothing
 from self_awareness_evaluation.live.listeners import MONITOR, STARTED_WITHIN_S, MonitorListener
@@ -21,7 +20,8 @@ from self_awareness_evaluation.live.processes import (LiveError, Processes, awai
                                                       becomes_true, say, wait)
 from self_awareness_evaluation.live.recordings import Recorder, System
 from self_awareness_evaluation.live.rows import Row
-from self_awareness_evaluation.simulated.measures import AFTERMATH_S
+from self_awareness_evaluation.records import Learning
+from self_awareness_evaluation.rows import AFTERMATH_S
 from self_awareness_follow_me.induction import process_id
 
 _STATUS_WITHIN_S = 5.0  # of the last window of a stretch

@@ -9,8 +9,8 @@ from typing import Callable, List, Optional, Sequence
 from self_awareness.calibration import confidence
 from self_awareness_evaluation.live.measures import SEPARATOR
 from self_awareness_evaluation.live.rows import MONITOR, Row
-from self_awareness_evaluation.simulated.measures import NORMAL
-from self_awareness_evaluation.simulated.tables import table
+from self_awareness_evaluation.records import NORMAL
+from self_awareness_evaluation.tables import table
 
 Tables = Callable[[Sequence[Row]], List[str]]
 """The lines of a section of a page, by rows."""

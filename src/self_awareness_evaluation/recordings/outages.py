@@ -8,21 +8,30 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, PaperModel, Roc,
-                            TrainedModel, Tuning, recordings)
+from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EncodingRules, EvidenceModel,
+                            PaperModel, Roc, TrainedModel, Tuning, recordings)
+from self_awareness.calibration.limits import TooLittleError
 from self_awareness.judging import BOTH, Judge, evidence_judge, paper_judge
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
+from self_awareness_evaluation import tunings
+from self_awareness_evaluation.detectors import judged_of
+from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.peers.frequency import LearnedFrequencyMonitor
-from self_awareness_evaluation.systems import ScoringSystem, settling
+from self_awareness_evaluation.records import NORMAL
+from self_awareness_evaluation.rows import HOUR_S, Row, Subject, at_end
+from self_awareness_evaluation.systems import Judged, ScoringSystem, SystemAlarm, settling
 from self_awareness_evaluation.windowed_events import WindowedEvents
+
+OUTAGE = 'outage'
+"""Kind of fault: what is wrong in a recording of a real robot."""
 
 RATE = 0.01
 """The share of normal windows that may score below the threshold of systems that have one.
@@ -61,33 +70,6 @@ class Case:
     normal: Tuple[Span, ...]
 
 
-@dataclass(frozen=True)
-class OutageRow:
-    """What a system says of a recording.
-
-    Args:
-        recording: name of the case.
-        system: its name.
-        watched: event types, or topics, that it watches at all.
-        outage_found: whether an alarm stood in the outage; None: there was none.
-        stood_before: whether it stood at the onset already.
-        latency_s: from the onset to the first alarm raised in the outage; None: none was.
-        false_alarms: raised in normal operation.
-        false_s: time for which an alarm stood in normal operation [s].
-        normal_s: length of the normal operation [s].
-    """
-
-    recording: str
-    system: str
-    watched: int
-    outage_found: Optional[bool]
-    stood_before: bool
-    latency_s: Optional[float]
-    false_alarms: int
-    false_s: float
-    normal_s: float
-
-
 def _social(judged: int, first: int, second: int) -> Case:
     bags = [f'social_robot/subject2_session{session}.bag' for session in (first, second, judged)]
     return Case(f'social_robot, session {judged}', BagPart(bags[0]), BagPart(bags[1]), bags[2],
@@ -112,22 +94,6 @@ CASES = (
 """All cases."""
 
 
-def evaluate(data: Path, tuning: Optional[Tuning] = None) -> List[OutageRow]:
-    """Let every system judge every case.
-
-    Args:
-        data: folder of the recordings.
-        tuning: of the evidence method; None: as it is.
-
-    Raises:
-        ValueError: a recording is not in the folder.
-        BagError: one cannot be read.
-    """
-    check_data(data)
-    return [outage_row(case, name, system(case, data, tuning or Tuning())) for case in CASES
-            for name, system in SYSTEMS.items()]
-
-
 def check_data(data: Path) -> None:
     """Check that a folder has the recordings of all cases.
 
@@ -141,16 +107,46 @@ def check_data(data: Path) -> None:
                                  'has it')
 
 
+def rows(unit: Unit, case: Case, data: Path) -> Iterator[Row]:
+    """Yield what variants say of a case: of normal operation, and of the outage if there is one.
+
+    Args:
+        unit: of the case.
+        case: one of CASES.
+        data: folder of the recordings, see check_data().
+
+    Raises:
+        BagError: a recording cannot be read.
+    """
+    for variant in unit.variants:
+        subject = unit.subject(variant)
+        try:
+            judged = SYSTEMS[variant.system](case, data, tunings.tuning_of(variant.change))
+        except TooLittleError as error:
+            yield Row(subject, NORMAL, refused=str(error))
+            if case.outage is not None:
+                yield Row(subject, OUTAGE, refused=str(error))
+            continue
+        yield from case_rows(subject, case, judged)
+
+
 @dataclass(frozen=True)
 class JudgedCase:
-    """Alarms of a system, length of the recording [s], and how much was watched (OutageRow)."""
+    """What a system says of a recording.
 
-    alarms: Sequence[Span]
+    Args:
+        alarms, suspicions: as SystemAlarm, with times from the first message on [ns].
+        length: of the recording [s].
+        watched: event types, or topics, that it watches at all.
+    """
+
+    alarms: Sequence[SystemAlarm]
+    suspicions: Sequence[SystemAlarm]
     length: float
     watched: int
 
 
-def judge_by_evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
+def _evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
     """Let the evidence detector judge a case.
 
     Args:
@@ -191,12 +187,11 @@ def _frequency_learned(case: Case, data: Path, _: Tuning) -> JudgedCase:
     threshold = Roc(scorer.scores(normal)[~settling(normal)], []).level(RATE).cutoff
     recording = recordings.read(trained, BagPart(str(data / case.judged)))
     judged = ScoringSystem('frequency_learned', scorer, threshold).judge(_events(recording))
-    return JudgedCase([_span(recording, alarm.start, alarm.end) for alarm in judged.alarms],
-                      _span(recording, recording.origin, recording.end)[1], len(scorer.bounds))
+    return _from_first_message(recording, judged, len(scorer.bounds))
 
 
 SYSTEMS: Dict[str, Callable[[Case, Path, Tuning], JudgedCase]] = {
-    'evidence': judge_by_evidence,
+    'evidence': _evidence,
     'paper': _paper,
     'frequency_learned': _frequency_learned,
 }
@@ -226,10 +221,17 @@ def _paper_threshold(scores: np.ndarray) -> float:
 
 def _judge(trained: TrainedModel, judge: Judge, path: Path, watched: int) -> JudgedCase:
     recording = recordings.read(trained, BagPart(str(path)))
-    verdicts = judge(recording.stamps, recording.ids, recording.end,
+    verdicts = judge(recording.stamps, recording.ids, recording.end, recording.event_types,
                      attributes=recording.attributes)
-    return JudgedCase([_span(recording, alarm.begin, alarm.end) for alarm in verdicts.alarms],
-                      _span(recording, recording.origin, recording.end)[1], watched)
+    judged = judged_of(verdicts, recording.event_types, EVIDENCE_THRESHOLD, trained.graph)
+    return _from_first_message(recording, judged, watched)
+
+
+def _from_first_message(recording: RecordingEvents, judged: Judged, watched: int) -> JudgedCase:
+    def shifted(found: Sequence[SystemAlarm]) -> List[SystemAlarm]:
+        return [each.shifted(-recording.origin) for each in found]
+    return JudgedCase(shifted(judged.alarms), shifted(judged.suspicions),
+                      (recording.end - recording.origin) / SECOND_NS, watched)
 
 
 def _events(recording: RecordingEvents) -> WindowedEvents:
@@ -237,27 +239,24 @@ def _events(recording: RecordingEvents) -> WindowedEvents:
                           recording.end + 1, attributes=recording.attributes)
 
 
-def _span(recording: RecordingEvents, start: int, end: int) -> Span:
-    return (start - recording.origin) / SECOND_NS, (end - recording.origin) / SECOND_NS
-
-
-def outage_row(case: Case, name: str, judged: JudgedCase) -> OutageRow:
-    """Return what a system of a name says of a case."""
+def case_rows(subject: Subject, case: Case, judged: JudgedCase) -> Iterator[Row]:
+    """Yield the rows of a case."""
     normal = [(start, min(end, judged.length)) for start, end in case.normal]
     false = [alarm for alarm in judged.alarms
-             if any(start <= alarm[0] < end for start, end in normal)]
-    found: Optional[bool] = None
-    before, latency = False, None
-    if case.outage is not None:
-        onset, relief = case.outage
-        found = any(_overlap(alarm, case.outage) > 0.0 for alarm in judged.alarms)
-        before = any(start <= onset < end for start, end in judged.alarms)
-        latency = next((start - onset for start, _ in judged.alarms if onset < start < relief),
-                       None)
-    return OutageRow(case.name, name, judged.watched, found, before, latency, len(false),
-                     sum(_overlap(alarm, span) for alarm in judged.alarms for span in normal),
-                     sum(end - start for start, end in normal))
+             if any(start <= alarm.start / SECOND_NS < end for start, end in normal)]
+    yield Row(subject, NORMAL, hours=sum(end - start for start, end in normal) / HOUR_S,
+              alarms=len(false), standing_hours=sum(
+                  _overlap(alarm, span) for alarm in judged.alarms for span in normal) / HOUR_S,
+              evidence=tuple(alarm.evidence for alarm in false), watched=judged.watched)
+    if case.outage is None:
+        return
+    onset, relief = (nanoseconds(min(each, judged.length)) for each in case.outage)
+    found = next((alarm for alarm in judged.alarms if onset < alarm.start < relief), None)
+    row = Row(subject, OUTAGE, watched=judged.watched,
+              stood_before=any(alarm.stands_at(onset) for alarm in judged.alarms),
+              latency_s=None if found is None else (found.start - onset) / SECOND_NS)
+    yield at_end(row, [*judged.alarms, *judged.suspicions], onset, relief)
 
 
-def _overlap(a: Span, b: Span) -> float:
-    return max(min(a[1], b[1]) - max(a[0], b[0]), 0.0)
+def _overlap(alarm: SystemAlarm, span: Span) -> float:
+    return max(min(alarm.end / SECOND_NS, span[1]) - max(alarm.start / SECOND_NS, span[0]), 0.0)

@@ -8,16 +8,16 @@ from __future__ import annotations
 
 import hashlib
 import random
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness import EventType
 from self_awareness.stamps import nanoseconds
+from self_awareness_evaluation.records import FaultRecord
 from self_awareness_evaluation.simulated.attributes import (AttributeReader, MessageAttributes,
                                                             packed)
-from self_awareness_evaluation.simulated.measures import NORMAL
 from self_awareness_evaluation.windowed_events import Subscriptions, WindowedEvents
 from self_awareness_follow_me.effects import Change
 from self_awareness_follow_me.faults import effect_of
@@ -32,8 +32,7 @@ NORMAL_TEST_S = 600.0
 
 TRAINING_NAMES = ('training 1', 'training 2')
 CALIBRATION_NAME = 'calibration'
-NORMAL_NAMES = (*TRAINING_NAMES, CALIBRATION_NAME, NORMAL)
-"""What the records of normal operation are called; those of faults are called as the faults."""
+"""What the records to learn from are called; those of faults are called as the faults."""
 
 WITHIN_S: Dict[str, float] = {
     'stale:slam': 1.4,  # two periods, and a second
@@ -55,23 +54,6 @@ _ONSET_S = 50.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
 
 _IRREGULAR = ('speech_recognition', 'dialog', 'anchoring')  # they send when something happens
-
-
-@dataclass(frozen=True)
-class FaultRecord:
-    """A record with a fault.
-
-    Args:
-        kind: of the fault.
-        recording: the events.
-        onset: of the fault [ns].
-        culprits: the sources to blame; empty if no single source is.
-    """
-
-    kind: str
-    recording: WindowedEvents
-    onset: int
-    culprits: Tuple[str, ...]
 
 
 def default_faults(scenario: Scenario) -> List[str]:
@@ -99,7 +81,7 @@ def fault_record(scenario: Scenario, seed: int, kind: str) -> FaultRecord:
     duration_s = max(RECORD_S, fault.onset_s + _GOES_ON_S.get(kind, 0.0))
     recording = _recorded(scenario, derived, duration_s, fault)
     onset = nanoseconds(_start_s(derived) + fault.onset_s)
-    return FaultRecord(kind, recording, onset, effect_of(scenario, kind).culprits)
+    return FaultRecord(kind, effect_of(scenario, kind).culprits, recording, onset)
 
 
 def encode(recorded: List[Event], scenario: Scenario, end: int) -> WindowedEvents:

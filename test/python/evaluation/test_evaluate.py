@@ -1,145 +1,113 @@
-"""The program evaluate: files written whole, and errors that name the way out."""
+"""The program evaluate: what it measures, files written whole, and what it refuses."""
 from __future__ import annotations
 
 import csv
-import re
-import shutil
-import subprocess
 from pathlib import Path
-from typing import Any, Optional
+from typing import Any, List, Tuple
 
 import pytest
 
-from self_awareness_evaluation import catalogue, evaluate
-from self_awareness_evaluation.simulated import report, tables
-from self_awareness_evaluation.simulated.experiment import Results
-from self_awareness_evaluation.simulated.measures import Row
-
-ROOT = Path(__file__).resolve().parents[3]
+from self_awareness_evaluation import catalogue, evaluate, offline, row_files
+from self_awareness_evaluation.families.protocol import Records
+from self_awareness_evaluation.families.robot import CRASH
+from self_awareness_evaluation.records import Robot
+from self_awareness_evaluation.robots import Amount, of_family
+from self_awareness_evaluation.rows import Row
 
 
 @pytest.fixture(name='written', scope='module')
 def _written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp('evaluation') / 'new'
-    assert evaluate.main(['simulated', '--seeds', '2', '--seed', '5', '--systems', 'paper',
-                          'frequency', 'frequency_learned', '--without-systems', 'frequency',
-                          '--faults', 'cc1', 'rs', '--calibration', '60', '--jobs', '2',
-                          '-o', str(folder)]) == 0
+    assert evaluate.main([
+        'families', '--families', 'events_only', 'bursty', '--robots', '1', '--seed', '3',
+        '--starts', '1', '2', '--training', '60', '--calibration', '60', '--hours', '0.1',
+        '--systems', 'evidence', 'gaps', '--budgets', '0.5', '5', '--faults', 'crash', 'late',
+        '--jobs', '2', '-o', str(folder)]) == 0
+    assert evaluate.main([
+        'simulated', '--seeds', '1', '--seed', '5', '--systems', 'paper', 'frequency_learned',
+        '--faults', 'cc1', 'crash:slam', '--calibration', '60', '--jobs', '2',
+        '-o', str(folder)]) == 0
     return folder
 
 
-def test_csv_has_a_row_for_everything(written: Path) -> None:
-    with open(written / 'full' / 'simulated.csv', encoding='utf-8', newline='') as file:
-        rows = list(csv.DictReader(file))
-    assert ({(row['system'], row['training_share'], row['seed'], row['record']) for row in rows}
-            == {(system, share, seed, record) for system in ('paper', 'frequency_learned')
-                for share in ('1.0', '0.1') for seed in '56'
-                for record in ('normal', 'cc1', 'rs')})
-    assert len(rows) == 24
-    for row in rows:
-        assert (row['auc'] == '') == (row['record'] == 'normal')
-        if row['record'] == 'cc1' and row['training_share'] == '1.0':
-            assert 0.0 < float(row['latency_s']) < 3.0
-            assert row['top3'] == 'True'
+def test_there_is_a_row_for_everything(written: Path) -> None:
+    rows = row_files.load(written / 'full' / 'simulated.csv', Row)
+    assert [(row.fault, row.subject.system) for row in rows] == [
+        (fault, system) for fault in ('normal', 'cc1', 'crash:slam')
+        for system in ('paper', 'frequency_learned')]
+    assert {row.subject.robot for row in rows} == {'own robot 5'}
+    found = [row for row in rows if row.fault == 'cc1']
+    assert all(row.latency_s is not None and 0.0 < row.latency_s < 3.0 for row in found)
+    assert all(row.among_three and row.level == 'ERROR' for row in found)
 
 
-def rows_have_a_cell_for_every_system(page: str) -> bool:
-    rows = [line for line in page.splitlines() if line.startswith('| cc1')]
-    return bool(rows) and all(line.count('|') == 4 for line in rows)
+def test_the_rows_of_families(written: Path) -> None:
+    rows = row_files.load(written / 'full' / 'families.csv', Row)
+    crashes = [row for row in rows if row.subject.robot == 'bursty 3' and row.fault == CRASH
+               and row.subject.system == 'gaps' and row.subject.learning.startswith('2')]
+    assert [row.source for row in crashes] == Records('bursty', 3).robot.regular
+    assert {row.subject.budget for row in rows if row.fault == CRASH
+            and row.subject.system == 'evidence'} == {0.5}
+    with open(written / 'families.csv', encoding='utf-8', newline='') as file:
+        figures = list(csv.DictReader(file))
+    assert len(figures) == 3 * 2 * 3  # families and all, learnings, budgets and the peer
+    figure = next(each for each in figures if (each['of'], each['system']) == ('bursty', 'gaps')
+                  and each['learning'].startswith('2'))
+    found = sum(row.latency_s is not None for row in crashes) / len(crashes)
+    assert float(figure['crash: found']) == pytest.approx(found, abs=0.005)
 
 
-def test_page_has_what_is_read_and_how_to_repeat_it(written: Path) -> None:
-    page = (written / 'simulated.md').read_text(encoding='utf-8')
-    assert 'rosrun self_awareness evaluate simulated --seeds 2 --seed 5' in page
-    assert 'Seeds 5, 6.' in page
-    head = next(line for line in page.splitlines() if 'target' in line and line.startswith('|'))
-    assert [cell.strip() for cell in head.split('|')][2:-1] == ['target', 'paper',
-                                                                'frequency_learned']
-    for title in ('Targets', 'False alarms an hour at equal latency', 'Alarms', 'Blame',
-                  'With 0.1 of the training data'):
-        assert f'\n## {title}\n' in page
-    watched = [line for line in page.splitlines() if line.startswith('| components watched')]
-    for line in watched:
-        assert re.fullmatch(r'\| components watched \| all \| – \| \d+ of 15 \|', line), line
-    assert len(watched) == 2
-    assert rows_have_a_cell_for_every_system(page)
-    assert 'full/simulated.csv' in page and 'full/simulated.md' in page
-    assert 'nan' not in page and 'inf' not in page.split('## Targets')[1]
-    for name in ('figure2.png', 'overview.png'):
-        assert (written / name).read_bytes().startswith(b'\x89PNG')
+def test_the_pages_have_a_section_of_each(written: Path) -> None:
+    for name in ('README.md', 'research.md'):
+        page = (written / name).read_text(encoding='utf-8')
+        for command in ('families --families events_only bursty', 'simulated --seeds 1 --seed 5'):
+            assert page.count(f'rosrun self_awareness evaluate {command}') == 1
+        assert 'nan' not in page and 'inf' not in page.replace('info', '')
+        for block in page.split('\n\n'):
+            assert len({line.count('|') for line in block.splitlines()
+                        if line.startswith('|')}) <= 1, block
 
 
-def test_full_page_has_a_table_of_every_quantity(written: Path) -> None:
-    page = (written / 'full' / 'simulated.md').read_text(encoding='utf-8')
-    assert 'rosrun self_awareness evaluate simulated --seeds 2 --seed 5' in page
-    assert '## With 0.1 of the training data' in page
-    for title in ('Latency', 'AUC', 'FNR', 'suspicion', 'blame', 'bare verdict'):
-        assert page.count(title) >= 2, title
-    assert rows_have_a_cell_for_every_system(page)
-    assert 'nan' not in page and 'inf' not in page
+def test_an_ablation_judges_each_robot_by_every_variant(tmp_path: Path,
+                                                        monkeypatch: pytest.MonkeyPatch) -> None:
+    def own(seed: int, faults: Tuple[str, ...]) -> Robot:
+        assert 'ac' in faults and 'extra' not in faults, 'that is a suspicion only'
+        return of_family('small', seed, Amount(0.1, ('crash',), most=1))
+
+    monkeypatch.setattr(offline.robots, 'own', own)
+    arguments = ['ablation', '--families', 'events_only', '--seed', '3', '--own-seeds', '1',
+                 '--starts', '1', '--training', '60', '--calibration', '60', '--hours', '0.1',
+                 '--faults', '1', '--channels', 'overdue', '--numbers', '--jobs', '2',
+                 '-o', str(tmp_path)]
+    assert evaluate.main(arguments) == 0
+    rows = row_files.load(tmp_path / 'full' / 'ablation.csv', Row)
+    assert {(row.subject.robot, row.subject.change) for row in rows} == {
+        (robot, change) for robot in ('own robot 3', 'events_only 3')
+        for change in ('', 'without overdue')}
+    assert '| without overdue |' in (tmp_path / 'research.md').read_text(encoding='utf-8')
+    assert evaluate.main(arguments) == 0  # all is done already
+    assert row_files.load(tmp_path / 'full' / 'ablation.csv', Row) == rows
 
 
-def fault(kind: str, seed: int, latency_s: Optional[float], first: Optional[bool]) -> Row:
-    return Row('oracle', 1.0, seed, kind, 500, 0, 0, 0, latency_s=latency_s, top1=first,
-               top3=None if first is None else True)
-
-
-def test_page_tells_alarms_and_blame() -> None:
-    rows = {'oracle': [fault('cc1', 1, 0.2, True), fault('cc1', 2, 0.4, False),
-                       fault('crash:slam', 1, None, None), fault('rs', 1, 2.0, None)],
-            'deaf': [fault('cc1', 1, None, None), fault('cc1', 2, None, None),
-                     fault('crash:slam', 1, None, None), fault('rs', 1, None, None)]}
-    assert tables.alarms(rows) == [
-        '| fault | oracle | deaf |', '| --- | --- | --- |', '| cc1 | 100 %, 0.20 s | – |',
-        '| crash:slam | – | – |', '| rs | 100 %, 2.00 s | – |', '| every crash | – | – |']
-    assert tables.blame(rows)[2:] == ['| cc1 | 50 % / 100 % | – / – |']
-
-
-def test_a_failure_leaves_the_old_page(written: Path, tmp_path: Path,
-                                       monkeypatch: pytest.MonkeyPatch) -> None:
-    page = tmp_path / 'simulated.md'
-    page.write_text('old', encoding='utf-8')
-
-    def fail(*_: Any) -> str:
-        raise OSError('no space left')
-
-    monkeypatch.setattr(report, 'page', fail)
-    monkeypatch.setattr(report.row_files, 'save', lambda *_: None)
-    monkeypatch.setattr(report, 'full_page', lambda *_: '')
-    with pytest.raises(OSError, match='no space left'):
-        report.write(tmp_path, None, Results(), '')
-    assert page.read_text(encoding='utf-8') == 'old'
-    assert [path.name for path in tmp_path.iterdir() if path.is_file()] == ['simulated.md']
-    assert not list(written.rglob('.part*')) and not list(tmp_path.rglob('.part*'))
-
-
-def test_a_missing_library_is_named_with_the_way_out(tmp_path: Path, capsys: Any,
-                                                     monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(catalogue.util, 'find_spec', lambda name: None)
-    arguments = ['simulated', '--faults', 'cc1', '-o', str(tmp_path / 'out')]
-    assert evaluate.main(arguments) == 1
-    error = capsys.readouterr().err
-    for word in ('sklearn', 'hmmlearn', 'scripts/evaluation_env.sh',
-                 'without isolation_forest and one_class_svm and hmm (--systems)'):
-        assert word in error
-    assert not (tmp_path / 'out').exists()
-    catalogue.check_libraries(['paper', 'frequency', 'markov'])
-
-
-@pytest.mark.parametrize('wrong', [['--faults', 'flood'], ['--seeds', '0'], ['--jobs', '0'],
-                                   ['--calibration', '5'], ['--calibration', 'x'],
-                                   ['--training-share', '1'], ['--systems', 'oracle'],
-                                   ['--systems', 'paper', '--without-systems', 'paper']])
-def test_wrong_arguments_are_refused(wrong: list, tmp_path: Path, capsys: Any) -> None:
-    arguments = wrong if '--systems' in wrong else ['--systems', 'paper', *wrong]
-    assert evaluate.main(['simulated', '-o', str(tmp_path / 'out'), *arguments]) in (1, 2)
-    assert wrong[-1] in capsys.readouterr().err or wrong[-2] == '--without-systems'
+@pytest.mark.parametrize('wrong', [
+    ['simulated', '--faults', 'flood'], ['simulated', '--seeds', '0'],
+    ['simulated', '--jobs', '0'], ['simulated', '--calibration', '5'],
+    ['simulated', '--systems', 'oracle'], ['families', '--families', 'cars'],
+    ['families', '--starts', '0'], ['families', '--starts', '17'], ['families', '--hours', '0'],
+    ['families', '--budgets', '0'], ['families', '--faults', 'stall'],
+    ['families', '--seed', '0'], ['ablation', '--kinds', 'luck'],
+    ['families', '--families', 'timers', 'stalls', '--hours', '20']])
+def test_wrong_arguments_are_refused(wrong: List[str], tmp_path: Path, capsys: Any) -> None:
+    assert evaluate.main([wrong[0], '-o', str(tmp_path / 'out'), *wrong[1:]]) in (1, 2)
+    told = capsys.readouterr().err
+    assert any(word in told for word in wrong[2:])
     assert not (tmp_path / 'out').exists()
 
 
-def test_the_environment_script_is_sound() -> None:
-    if shutil.which('shellcheck') is None:
-        subprocess.run(('bash', '-n', str(ROOT / 'scripts' / 'evaluation_env.sh')), check=True)
-    else:
-        subprocess.run(('shellcheck', '-x', '-P', 'SCRIPTDIR',
-                        str(ROOT / 'scripts' / 'evaluation_env.sh')), check=True)
+def test_every_system_says_how_many_components_it_watches(written: Path) -> None:
+    rows = row_files.load(written / 'full' / 'simulated.csv', Row)
+    watched = {row.subject.system: (row.watched, row.components) for row in rows
+               if row.fault == 'normal'}
+    assert watched['paper'] == (None, 15), 'it judges all together'
+    assert watched['frequency_learned'][0] in range(1, 16)
+    assert set(watched) < set(catalogue.NAMES)

@@ -1,49 +1,58 @@
 """`evaluate recordings`: what is counted, the files, and a folder that lacks a recording."""
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 from typing import Any, List
 
 import pytest
 
 from self_awareness.parts import BagPart
-from self_awareness_evaluation import evaluate
+from self_awareness.stamps import SECOND_NS
+from self_awareness_evaluation import evaluate, row_files
 from self_awareness_evaluation.recordings import outages
-from self_awareness_evaluation.recordings.outages import Case, JudgedCase, OutageRow, Span
+from self_awareness_evaluation.experiment import Unit
+from self_awareness_evaluation.recordings.outages import Case, JudgedCase, Span
+from self_awareness_evaluation.records import NORMAL, REAL
+from self_awareness_evaluation.rows import HOUR_S, Row
+from self_awareness_evaluation.systems import SystemAlarm
+from self_awareness_evaluation.variants import Variant
 
 
-def rows_of(alarms: List[Span], tmp_path: Path,
-            monkeypatch: pytest.MonkeyPatch) -> List[OutageRow]:
+def rows_of(alarms: List[Span], monkeypatch: pytest.MonkeyPatch) -> List[Row]:
     """Let a system that raises these alarms judge a recording of 100 s, with an outage or not."""
-    (tmp_path / 'a.bag').touch()
     normal = BagPart('a.bag')
-    monkeypatch.setattr(outages, 'CASES', (
-        Case('faulty', normal, normal, 'a.bag', (50.0, 60.0), ((10.0, 50.0), (70.0, 1e9))),
-        Case('healthy', normal, normal, 'a.bag', None, ((0.0, 1e9),))))
+    cases = (Case('faulty', normal, normal, 'a.bag', (50.0, 60.0), ((10.0, 50.0), (70.0, 1e9))),
+             Case('healthy', normal, normal, 'a.bag', None, ((0.0, 1e9),)))
+    raised = [SystemAlarm(round(start * SECOND_NS), round(end * SECOND_NS), True, [], culprit='/a')
+              for start, end in alarms]
     monkeypatch.setattr(outages, 'SYSTEMS',
-                        {'oracle': lambda *_: JudgedCase(alarms, 100.0, 3)})
-    return outages.evaluate(tmp_path)
+                        {'oracle': lambda *_: JudgedCase(raised, [], 100.0, 3)})
+    unit = Unit(lambda _: [], REAL, 'a case', (Variant('oracle'),))
+    return [row for case in cases for row in outages.rows(unit, case, Path())]
 
 
-def test_an_alarm_in_the_outage_finds_it(tmp_path: Path, monkeypatch) -> None:
-    faulty, healthy = rows_of([(5.0, 12.0), (50.5, 72.0)], tmp_path, monkeypatch)
+def test_an_alarm_in_the_outage_finds_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    normal, outage, healthy = rows_of([(5.0, 12.0), (50.5, 72.0)], monkeypatch)
     # Start-up and the time after the outage are not counted, but the alarm may not stay in them.
-    assert faulty == OutageRow('faulty', 'oracle', 3, True, False, 0.5, 0, pytest.approx(4.0),
-                               70.0)
-    assert healthy == OutageRow('healthy', 'oracle', 3, None, False, None, 2, pytest.approx(28.5),
-                                100.0)
+    assert (normal.watched, normal.alarms) == (3, 0)
+    assert normal.hours * HOUR_S == pytest.approx(70.0)
+    assert normal.standing_hours * HOUR_S == pytest.approx(4.0)
+    assert (outage.stood_before, outage.latency_s) == (False, pytest.approx(0.5))
+    assert (outage.level, outage.culprit) == ('ERROR', '/a')
+    assert (healthy.fault, healthy.alarms) == (NORMAL, 2)
+    assert healthy.standing_hours * HOUR_S == pytest.approx(28.5)
 
 
-def test_an_alarm_that_stood_before_is_false(tmp_path: Path, monkeypatch) -> None:
-    faulty, _ = rows_of([(48.0, 55.0), (56.0, 57.0)], tmp_path, monkeypatch)
-    assert (faulty.outage_found, faulty.stood_before, faulty.false_alarms) == (True, True, 1)
-    assert faulty.latency_s == pytest.approx(6.0) and faulty.false_s == pytest.approx(2.0)
+def test_an_alarm_that_stood_before_is_false(monkeypatch: pytest.MonkeyPatch) -> None:
+    normal, outage, _ = rows_of([(48.0, 55.0), (56.0, 57.0)], monkeypatch)
+    assert (outage.stood_before, normal.alarms) == (True, 1)
+    assert outage.latency_s == pytest.approx(6.0)
+    assert normal.standing_hours * HOUR_S == pytest.approx(2.0)
 
 
-def test_an_alarm_after_the_outage_does_not_find_it(tmp_path: Path, monkeypatch) -> None:
-    faulty, _ = rows_of([(61.0, 65.0), (80.0, 81.0)], tmp_path, monkeypatch)
-    assert (faulty.outage_found, faulty.latency_s, faulty.false_alarms) == (False, None, 1)
+def test_an_alarm_after_the_outage_does_not_find_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    normal, outage, _ = rows_of([(61.0, 65.0), (80.0, 81.0)], monkeypatch)
+    assert (outage.latency_s, outage.level, normal.alarms) == (None, '', 1)
 
 
 def test_a_folder_without_the_recordings_is_told(tmp_path: Path, capsys: Any) -> None:
@@ -56,17 +65,18 @@ def test_a_folder_without_the_recordings_is_told(tmp_path: Path, capsys: Any) ->
 
 def test_every_case_and_system_has_a_row(shared: Path, tmp_path: Path, monkeypatch) -> None:
     monkeypatch.chdir(shared)
-    assert evaluate.main(['recordings', '--data', 'data', '-o', str(tmp_path / 'out')]) == 0
-    with open(tmp_path / 'out' / 'recordings.csv', encoding='utf-8', newline='') as file:
-        rows = list(csv.DictReader(file))
-    assert ([(row['recording'], row['system']) for row in rows]
+    output = tmp_path / 'out'
+    assert evaluate.main(['recordings', '--data', 'data', '-o', str(output)]) == 0
+    rows = row_files.load(output / 'full' / 'recordings.csv', Row)
+    assert ([(row.subject.robot, row.subject.system) for row in rows if row.fault == NORMAL]
             == [(case.name, system) for case in outages.CASES
                 for system in ('evidence', 'paper', 'frequency_learned')])
-    page = (tmp_path / 'out' / 'recordings.md').read_text(encoding='utf-8')
+    page = (output / 'research.md').read_text(encoding='utf-8')
     assert page.count('\n| wheeled_robot') == 6 and page.count('\n| social_robot') == 9
     assert str(shared) not in page and 'evaluate recordings --data data' in page
-    found = {row['recording']: row['outage_found'] for row in rows if row['system'] == 'evidence'}
-    watched = {(row['recording'], row['system']): int(row['watched']) for row in rows}
-    assert watched['wheeled_robot, 13 February', 'evidence'] == 5
-    assert watched['wheeled_robot, 13 February', 'frequency_learned'] == 0
-    assert [found[case.name] for case in outages.CASES] == ['True', 'True', '', '', '']
+    of_outages = {(row.subject.robot, row.subject.system): row for row in rows
+                  if row.fault == outages.OUTAGE}
+    found = of_outages['wheeled_robot, 13 February', 'evidence']
+    assert found.watched == 5 and found.latency_s is not None and found.level == 'ERROR'
+    assert of_outages['wheeled_robot, 13 February', 'frequency_learned'].watched == 0
+    assert of_outages['wheeled_robot, 17 January', 'evidence'].stood_before

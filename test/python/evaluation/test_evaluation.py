@@ -1,10 +1,7 @@
-"""The evaluation: the same windows, alarms and records for all systems, and what is measured."""
+"""The evaluation: the same windows, alarms and records for all systems."""
 from __future__ import annotations
 
-import math
-from dataclasses import replace
 from pathlib import Path
-from typing import List, Optional
 
 import numpy as np
 import pytest
@@ -14,21 +11,13 @@ from self_awareness import (DEFAULT_WINDOW, DetectorParameters, EncodingRules, E
                             PaperModel, Persistence, Training, read_events)
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.detectors import Paper, scenario_graph
-from self_awareness_evaluation.simulated import measures, summary, tradeoff
 from self_awareness_evaluation.simulated.records import (default_faults, encode, fault_record,
                                                          normal_record)
-from self_awareness_evaluation.systems import Judged, SystemAlarm, persistent, settling
-from self_awareness_evaluation.windowed_events import WindowedEvents, counts, known_ids, stamps_by
+from self_awareness_evaluation.systems import persistent, settling
+from self_awareness_evaluation.windowed_events import WindowedEvents, stamps_by
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import load_scenario
 from self_awareness_follow_me.simulation import START_S, InducedFault, events, simulate
-
-
-def judged(scores: list, alarms: list, settling: int = 0, threshold: float = 1.0) -> Judged:
-    start = START + DEFAULT_WINDOW * np.arange(len(scores), dtype=np.int64)
-    score = np.array(scores, dtype=float)
-    return Judged(start, score < threshold, score, np.arange(len(scores)) < settling, alarms,
-                  threshold)
 
 
 def at(window: int) -> int:
@@ -48,9 +37,6 @@ def test_windows_and_counts_are_those_of_the_detector() -> None:
     assert len(verdicts.start) == 200
     assert np.array_equal(settling(recording), verdicts.settling)
     assert settling(recording).sum() == 51  # the first event comes after the window begins
-    table = counts(recording, [BATTERY])  # all but the battery: in the last column
-    assert np.array_equal(table.sum(axis=1), verdicts.events)
-    assert table[:, 0].sum() == (recording.ids == 1).sum()
 
 
 def test_types_not_in_the_vocabulary_are_told_apart_behind_it() -> None:
@@ -60,7 +46,6 @@ def test_types_not_in_the_vocabulary_are_told_apart_behind_it() -> None:
     assert encoded.event_types == [camera, BATTERY, LASER]
     assert ([encoded.event_types[id_] for id_ in encoded.ids]
             == [recording.event_types[id_] for id_ in recording.ids])
-    assert set(known_ids(recording, [camera]).tolist()) == {1}
 
 
 def test_stamps_of_every_topic() -> None:
@@ -150,7 +135,6 @@ def test_a_record_knows_who_does_not_subscribe_from_the_onset_on() -> None:
     assert start < record.onset == onset
     assert before - after == {('/navigation', '/pose_hypotheses')} and not after - before
     assert record.recording.end >= onset + 60 * SECOND_NS
-    assert len(record.recording.beginning(0.1).subscriptions) == 1
     normal = normal_record(scenario, 3, 'training 1', 5.0)
     assert [present for _, present in normal.subscriptions] == [before]
     assert {edge[1:] for edge in scenario_graph()} <= {(topic, node) for node, topic in before}
@@ -184,80 +168,3 @@ def test_all_default_faults_exist() -> None:
     assert sum(kind.startswith('crash:') for kind in kinds) == 12
     for kind in kinds:
         effect_of(scenario, kind)
-
-
-def test_beginning_of_a_recording() -> None:
-    part = robot(20.0, 1).beginning(0.25)
-    assert part.end - START == pytest.approx(5.0 * SECOND_NS, abs=0.01 * SECOND_NS)
-    assert part.stamps[-1] < part.end
-    assert (part.ids == 0).sum() == pytest.approx(250, abs=1)
-
-
-def test_measures_of_a_fault() -> None:
-    # 20 windows, 2 settle, the fault begins within window 9: 10 windows begin after it.
-    scores = [9, 0, 9, 9, 0, 9, 9, 9, 9, 9, 9, 0, 0, 0, 9, 9, 0, 9, 9, 9]
-    alarms = [SystemAlarm(at(5), at(8), True, ['/slam']),
-              SystemAlarm(at(14), at(18), True, ['/slam', '/power', '/player'])]
-    row = measures.fault_row('x', 1.0, 1, 'cc1', judged(scores, alarms, 2), at(9) + 5, ['/player'],
-                             judged([9] * 20, []))
-    assert (row.normal_windows, row.false_windows, row.false_alarms) == (7, 1, 1)
-    assert row.windows == 10
-    assert row.missed_raw == 6  # 10, 14, 15, 17, 18, 19
-    assert row.missed == 4  # 10, 17, 18, 19: window 17 clears the alarm
-    assert (row.windows_after_alarm, row.missed_after_alarm) == (6, 3)
-    assert row.auc == pytest.approx(1.0 - 6 / 10 / 2)
-    assert row.latency_s == pytest.approx(0.5, abs=1e-6)
-    assert (row.stood_before, row.top1, row.top3) == (False, False, True)
-
-
-def test_an_alarm_that_stands_at_the_onset_is_a_false_one() -> None:
-    row = measures.fault_row('x', 1.0, 1, 'cc1', judged([9.0] * 5 + [0.0] * 15,
-                                                        [SystemAlarm(at(8), at(20), False, None)]),
-                             at(10), ['/player'], judged([9] * 20, []))
-    assert (row.false_alarms, row.stood_before, row.latency_s) == (1, True, None)
-    assert (row.missed, row.windows_after_alarm, row.top1) == (0, 0, None)
-
-
-def test_measures_of_normal_operation() -> None:
-    row = measures.normal_row('x', 1.0, 1, judged([0, 0, 9, 0, 9], [SystemAlarm(at(3), at(4), True,
-                                                                                None)], 2))
-    assert (row.normal_windows, row.false_windows, row.false_alarms) == (3, 1, 1)
-    assert summary.false_positive_rate([row]) == pytest.approx(1 / 3)
-    assert summary.false_alarms([row]).per_hour == pytest.approx(3600 / 0.3)
-
-
-@pytest.mark.parametrize('culprits, first', [(['/slam'], True), (['/player'], False), ([], None)])
-def test_a_suspicion_names_somebody_too(culprits: List[str], first: Optional[bool]) -> None:
-    found = replace(judged([9.0] * 20, []), suspicion=np.arange(20) == 12,
-                    suspicions=[SystemAlarm(at(13), at(14), True, ['/slam'])])
-    row = measures.fault_row('x', 1.0, 1, 'unsubscribed:slam', found, at(10), culprits,
-                             judged([9] * 20, []))
-    assert (row.latency_s, row.noticed_s) == (None, pytest.approx(0.3))
-    assert row.noticed_first == first
-    # One that stands at the onset is no finding.
-    early = measures.fault_row('x', 1.0, 1, 'unsubscribed:slam', found, at(13), ['/slam'],
-                               judged([9] * 20, []))
-    assert (early.noticed_s, early.noticed_first) == (None, None)
-
-
-def test_what_was_not_found_took_for_ever() -> None:
-    assert summary.quantile([3.0, 1.0, None, 2.0], 0.5) == 2.0
-    assert summary.quantile([1.0, None, None], 0.5) == math.inf
-
-
-def test_trade_off_goes_from_lax_to_strict() -> None:
-    system = Paper()
-    system.train([robot(60.0, 1), robot(60.0, 2)])
-    calibration = robot(60.0, 3)
-    system.calibrate([calibration])
-    onset = START + 30 * SECOND_NS
-    fault = tradeoff.JudgedFault(system.judge(robot(60.0, 5, silent=((10.0, 12.0), (30.0, 60.0)))),
-                                 onset)
-    points = tradeoff.trade_offs('paper', 1, system.judge(calibration),
-                                 system.judge(robot(60.0, 4)), {'cc1': fault})
-    assert [point.step for point in points] == list(range(len(points)))
-    latencies = [math.inf if point.latency_s is None else point.latency_s for point in points]
-    assert latencies == sorted(latencies)
-    assert latencies[0] < latencies[8] < 1.0
-    assert points[8].false_alarms == 1  # before the onset
-    assert points[8].hours == pytest.approx((55.0 + 25.0) / 3600.0, rel=0.01)

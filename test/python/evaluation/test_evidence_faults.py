@@ -9,9 +9,10 @@ import pytest
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, UnknownEvents
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.detectors import Evidence, Paper, scenario_graph
-from self_awareness_evaluation.simulated.measures import first_alarm
+from self_awareness_evaluation.records import FaultRecord
+from self_awareness_evaluation.rows import first_alarm
 from self_awareness_evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
-                                                         TRAINING_NAMES, WITHIN_S, FaultRecord,
+                                                         TRAINING_NAMES, WITHIN_S,
                                                          fault_record, normal_record)
 from self_awareness_evaluation.systems import Judged
 from self_awareness_follow_me.scenario import load_scenario

@@ -1,7 +1,7 @@
 """The robots of the families: what is random in them, what is not, and what a fault does."""
 from __future__ import annotations
 
-from typing import Dict
+from typing import Dict, List
 
 import numpy as np
 import pytest
@@ -9,13 +9,16 @@ import pytest
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.conditions import Conditions
 from self_awareness_evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
-from self_awareness_evaluation.families.kinds import FAMILIES, draw
-from self_awareness_evaluation.families.protocol import RESTARTS_IN_S, SELDOM, Learning, Records
+from self_awareness_evaluation.families.kinds import DEFAULT, FAMILIES, draw
+from self_awareness_evaluation.families.protocol import DEATH, RESTARTS_IN_S, SELDOM, Records
 from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, RESTART,
                                                       SILENT, STARVED, Fault, Output, Robot)
+from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 POINTS = 'sensor_msgs/PointCloud2'
+
+KINDS = (*DEFAULT, 'fleet')
 
 
 def small(jitter_s: float = 0.0003, ppm: float = 0.0) -> Robot:
@@ -44,7 +47,7 @@ def same(first: WindowedEvents, second: WindowedEvents) -> bool:
             and np.array_equal(first.ids, second.ids))
 
 
-@pytest.mark.parametrize('name', FAMILIES)
+@pytest.mark.parametrize('name', KINDS)
 def test_every_family_can_be_repeated_and_differs_by_seed_and_start(name: str) -> None:
     recording = draw(name, 3).start(5, 60.0)
     assert same(recording, draw(name, 3).start(5, 60.0))
@@ -55,7 +58,7 @@ def test_every_family_can_be_repeated_and_differs_by_seed_and_start(name: str) -
     assert not np.array_equal(other.stamps - other.end, recording.stamps - recording.end)
 
 
-@pytest.mark.parametrize('name', FAMILIES)
+@pytest.mark.parametrize('name', KINDS)
 def test_recordings_of_every_family_are_in_order_and_within_their_time(name: str) -> None:
     robot = draw(name, 3)
     recording = robot.start(5, 60.0, begin_s=100.0)
@@ -144,7 +147,8 @@ def of_fault(kind: str, source: str) -> Dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize('kind', [CRASH, HALF_RATE, LATE, MISSES, STARVED, SILENT])
-@pytest.mark.parametrize('name', FAMILIES)
+@pytest.mark.parametrize('name', ['timers', 'stalled_loops', 'wireless', 'bursty', 'rate_modes',
+                                  'servers', 'fleet'])
 def test_nothing_changes_before_the_onset(name: str, kind: str) -> None:
     robot = draw(name, 2)
     source = '' if kind in (STARVED, SILENT) else robot.answering[0]
@@ -399,3 +403,98 @@ def test_robots_of_one_make_are_the_same_but_for_a_node_of_their_own() -> None:
     assert len(set().union(*own[:3])) == 3, 'each is another robot'
     assert own[3] == own[4] and not own[3] & set().union(*own[:3])
     assert {kind.source for kind in learned[0].event_types} >= set(records.robot.regular)
+
+
+def test_robots_of_a_fleet_say_which_one_they_are() -> None:
+    records, own = Records('fleet', 3), Records('fleet_own', 3)
+    learning = Learning(2, 60.0, 1, 60.0)
+    learned = [*records.training(learning), *records.calibration(learning)]
+    assert [recording.robot for recording in learned] == ['r0', 'r1', 'r100']
+    names = [{kind.source for kind in recording.event_types} for recording in learned]
+    assert names[0] - names[1] == {'/arm', '/gripper_1', '/gripper_2', '/sensor0'}
+    watched, = records.watched(60.0 / 3600.0)
+    assert watched.robot == '' and same(watched, *own.watched(60.0 / 3600.0))
+    clocks = {output.emission.ppm for output in records.robot.outputs
+              if isinstance(output.emission, Timer)}
+    assert len(clocks) > 10
+    assert [recording.robot for recording in own.training(learning)] == ['', '']
+
+
+def test_a_robot_in_a_mode_never_leaves_it() -> None:
+    robot = draw('driving_docked', 3)
+    changing, active, idle = (stamps(each.start(5, 600.0)) for each in (
+        robot, robot.in_mode(True), robot.in_mode(False)))
+    motion = {topic for topic in active if '/motion' in topic}
+    assert set(active) - set(idle) == motion and set(idle) == {
+        topic for topic in changing if '/motion' not in topic}
+    assert len(active['/motion0/data']) == pytest.approx(6000.0, abs=2)
+    assert len(changing.get('/motion0/data', [])) < 5900
+    # All else is the same start: its timers tick as they do.
+    assert np.array_equal(changing['/driver0/data'], active['/driver0/data'])
+
+
+def test_a_family_is_broken_in_a_mode_and_learned_in_all_or_in_this_one() -> None:
+    learning = Learning(1, 200.0, 1, 60.0)
+    changing, idle, alone = (Records(f'long_pauses{name}', 2)
+                             for name in ('', '_idle', '_idle_alone'))
+    assert same(*idle.training(learning), *changing.training(learning))
+    assert not same(*alone.training(learning), *changing.training(learning))
+    died = [[(fault.source, fault.onset) for fault in records.faults((CRASH,))]
+            for records in (changing, idle, alone)]
+    assert died[1] == died[2] and set(died[1]) <= set(died[0])
+    assert same(next(idle.faults((CRASH,))).recording, next(alone.faults((CRASH,))).recording)
+    assert all(FAMILIES[f'long_pauses_{mode}'].told for mode in ('active', 'idle'))
+
+
+def begins(recordings: List[WindowedEvents]) -> List[float]:
+    """Return when recordings begin [s]."""
+    return [recording.stamps[0] / SECOND_NS for recording in recordings]
+
+
+@pytest.mark.parametrize('family,learned_in,watched_in',
+                         [('timers', 4, 4), ('timers_one_start', 1, 4), ('stalls', 1, 1)])
+def test_recordings_are_of_as_many_starts_as_the_family_says(family: str, learned_in: int,
+                                                             watched_in: int) -> None:
+    records = Records(family, 1)
+    learned = begins(records.training(Learning.of(3, 20.0, 20.0))
+                     + records.calibration(Learning.of(3, 20.0, 20.0)))
+    watched = begins(list(records.watched(0.51)))
+    assert len(learned) == 4 and len(watched) == 2
+    # Starts lie more than a day apart, recordings of one start do not overlap.
+    assert 1 + (np.diff(learned) > 86_400.0).sum() == learned_in
+    assert 1 + (np.diff([learned[0], *watched]) > 86_400.0).sum() == (
+        3 if watched_in == 4 else watched_in)
+    assert min(np.diff(learned)) > 20.0
+
+
+def test_watched_hours_are_those_that_were_asked_for() -> None:
+    lengths = [(recording.end - recording.stamps[0]) / SECOND_NS
+               for recording in Records('events_only', 1).watched(1.25)]
+    assert lengths == pytest.approx([1800.0, 1800.0, 900.0], abs=5.0)
+
+
+def test_every_component_has_its_faults() -> None:
+    records = Records('bursty', 2)
+    robot = records.robot
+    found = [(fault.kind, fault.source) for fault in records.faults((CRASH, HALF_RATE, LATE))]
+    assert found == [
+        *((kind, source) for kind in (CRASH, HALF_RATE) for source in robot.regular),
+        *((LATE, source) for source in robot.regular if source in robot.answering)]
+    # Which faults are left out does not change the others, and those that are left are spread.
+    late = next(records.faults((LATE,))).recording
+    assert same(late, next(fault.recording for fault in records.faults((CRASH, LATE))
+                           if fault.kind == LATE))
+    some = [fault.source for fault in records.faults((CRASH,), 3)]
+    count = len(robot.regular)
+    assert some == [robot.regular[index] for index in (0, count // 3, 2 * count // 3)]
+
+
+def test_a_death_counts_from_the_first_message_that_is_missing() -> None:
+    deaths = list(Records('events_only', 1).faults((DEATH,)))
+    assert 5 <= len(deaths) <= 9
+    for death in deaths:
+        of_source = np.array([kind.source == death.source
+                              for kind in death.recording.event_types])
+        sent = death.recording.stamps[of_source[death.recording.ids]]
+        assert (sent < death.onset).all()
+        assert death.onset < death.recording.end - 60 * SECOND_NS

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import rosbag
 
-from self_awareness_evaluation.families.protocol import Learning
 from self_awareness_evaluation.live import drivers, plans, session, usage
 from self_awareness_evaluation.live.follow_me import CRASH, DOUBLE, HALF, HANG, FollowMe
 from self_awareness_evaluation.live.measures import ERROR, Status
@@ -19,6 +18,7 @@ from self_awareness_evaluation.live.packaged_nodes import (CAMERAS_HZ, FAULTS, H
                                                            NODES, RELAY)
 from self_awareness_evaluation.live.processes import Processes
 from self_awareness_evaluation.live.session import Plan, Step
+from self_awareness_evaluation.records import Learning
 
 PAGES = Path(__file__).resolve().parents[3] / 'docs' / 'evaluation'
 

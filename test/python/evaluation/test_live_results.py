@@ -16,7 +16,7 @@ from self_awareness_evaluation.live.reliability import (AT_RANDOM, BACK_WITHIN_S
                                                         MUST_BE_FOUND_S, not_mended, of_healthy)
 from self_awareness_evaluation.live.rows import RESTARTED, Row
 from self_awareness_evaluation.live.usage import slope_mb_per_hour
-from self_awareness_evaluation.simulated.measures import AFTERMATH_S
+from self_awareness_evaluation.rows import AFTERMATH_S
 
 DOCS = Path(__file__).resolve().parents[3] / 'docs'
 

@@ -11,7 +11,8 @@ import pytest
 
 from self_awareness import DEFAULT_WINDOW, METHOD
 from self_awareness_evaluation.detectors import Evidence
-from self_awareness_evaluation.families.protocol import KINDS, Learning, Records
+from self_awareness_evaluation.families.protocol import KINDS, Records
+from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.systems import Judged, SystemAlarm
 from self_awareness_evaluation.windowed_events import WindowedEvents
 

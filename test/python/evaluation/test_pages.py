@@ -10,9 +10,7 @@ import pytest
 from self_awareness import METHOD
 from self_awareness_evaluation import evaluate, pages, readme_numbers
 from self_awareness_evaluation.readme_numbers import NUMBERS, SECTION, Number, cell, section
-from self_awareness_evaluation.simulated import figures
-from self_awareness_evaluation.simulated.measures import Row
-from self_awareness_evaluation.simulated.tradeoff import TradeOff
+from self_awareness_evaluation.sections.page import RESEARCH, RESULTS
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / 'docs'
@@ -87,25 +85,18 @@ def test_pages_of_an_older_method_are_listed(tmp_path: Path, capsys) -> None:
     assert evaluate.main(['pages', '--docs', str(below / 'nowhere')]) == 1
 
 
-def test_every_page_of_the_evaluation_says_what_wrote_it() -> None:
-    found = {each.page for each in pages.find(DOCS)}
-    assert found >= {f'evaluation/{name}.md' for name in (
-        'simulated', 'families', 'live', 'nodes', 'recordings', 'ablation')}
-    assert {number.page for number in readme_numbers.NUMBERS} <= found
+def test_every_part_of_the_evaluation_says_what_wrote_it() -> None:
+    found = [(each.page, each.command.split()[3]) for each in pages.find(DOCS)
+             if each.command.startswith('rosrun self_awareness evaluate ')]
+    assert {(f'evaluation/{RESEARCH}', part) for part in (
+        'simulated', 'families', 'recordings', 'ablation')} <= set(found)
+    assert {(f'evaluation/{RESULTS}', part) for part in (
+        'simulated', 'families', 'recordings')} <= set(found)
+    assert {number.page for number in readme_numbers.NUMBERS} <= {page for page, _ in found}
 
 
 def test_the_numbers_of_the_readme_are_of_this_method() -> None:
+    """They come from two of the parts of their page."""
     of_readme = {number.page for number in NUMBERS}
-    assert [each.page for each in pages.find(DOCS) if each.page in of_readme and each.is_old] == []
-
-
-def test_no_other_system_hides_the_line_of_the_product() -> None:
-    """Without the graph, it is as good, in most of what is drawn."""
-    rows = {name: [Row(name, 1.0, 1, 'crash:a', 9, 0, 0, 0, latency_s=0.3)]
-            for name in ('evidence', 'evidence_no_graph', 'paper')}
-    points = {name: [TradeOff(name, 1, 1, 1, 0.5, 0.3)] for name in rows}
-    for axes in figures.overview(rows, points).axes:
-        first, *others = axes.get_lines()
-        assert first.get_label() == 'evidence' and len(others) == 2
-        assert all(first.get_zorder() > other.get_zorder()
-                   and first.get_linewidth() > other.get_linewidth() for other in others)
+    old = [each.command for each in pages.find(DOCS) if each.page in of_readme and each.is_old]
+    assert [command for command in old if command.split()[3] in ('simulated', 'families')] == []

@@ -8,14 +8,10 @@ from typing import Any, List
 import pytest
 
 from self_awareness import Tuning
-from self_awareness_evaluation import catalogue, evaluate, tunings
-from self_awareness_evaluation.families import experiment as families
-from self_awareness_evaluation.families.protocol import Learning
+from self_awareness_evaluation import evaluate, tunings
+from self_awareness_evaluation.variants import Variant
 
 from evaluation_robot import robot
-
-
-WITHOUT: List[List[str]] = [[], ['overdue']]
 
 # Whatever the method has: one that no value switches off, one that is, and two channels.
 PLAIN = next(number for number in Tuning.numbers() if number.off is None)
@@ -26,7 +22,7 @@ CHANNELS = Tuning.channels()[:2]
 def asked(*arguments: str) -> Tuning:
     parser = argparse.ArgumentParser()
     tunings.add(parser)
-    return tunings.of(parser.parse_args(arguments))
+    return tunings.tuning_of(tunings.of(parser.parse_args(arguments)))
 
 
 def test_nothing_is_changed_by_default() -> None:
@@ -71,21 +67,9 @@ def test_a_channel_that_is_left_out_finds_nothing() -> None:
     training = [robot(60.0, seed) for seed in (1, 2, 3)]
     death = robot(30.0, 4, silent=((15.0, 30.0),))
     said = []
-    for without in WITHOUT:
-        system = catalogue.make('evidence', tunings.changed([], without))
+    for change in ('', f'{tunings.WITHOUT}overdue'):
+        system = Variant('evidence', change=change).make(set())
         system.train(training[:2])
         system.calibrate(training[2:])
         said.append([alarm.evidence for alarm in system.judge(death).alarms])
     assert said[0] == ['overdue'] and 'overdue' not in said[1]
-
-
-def test_robots_of_families_are_judged_by_the_method_asked_for() -> None:
-    of_variants = []
-    for without in WITHOUT:
-        plan = families.Plan(('events_only',), (1,), (Learning.of(1, 60.0, 60.0),),
-                             ('evidence',), (0.5,), 0.05, ('crash',),
-                             tunings.changed([], without))
-        of_variants.append([row.latency_s
-                            for row in families.run_robot(plan, ('events_only', 1)).faults])
-    assert len(of_variants[0]) == len(of_variants[1]) > 0
-    assert of_variants[0] != of_variants[1]

@@ -1,1 +1,0 @@
-"""Two versions of the detectors side by side, by what the same commands measured of each."""

@@ -1,0 +1,228 @@
+"""What rows come to: false alarms with their interval, and how faults were found."""
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, TypeVar
+
+from self_awareness.calibration import confidence
+from self_awareness.calibration.confidence import Interval
+from self_awareness_evaluation.rows import NORMAL, Row
+
+_Key = TypeVar('_Key')
+
+SOON_S, WITHIN_S = 5.0, (1.0, 5.0, 50.0)
+"""Times in which faults are to be found [s]."""
+
+_NOTHING: Interval = (math.nan, math.nan)
+
+
+@dataclass(frozen=True)
+class Quiet:
+    """How normal operation was judged.
+
+    Args:
+        hours: of it, together [h].
+        alarms: false ones.
+        interval: 95 % interval of them, an hour.
+        warnings: times that a suspicion or an alarm began.
+        standing: share of the time in which an alarm stood; NaN: there is no time.
+        evidence: the alarms by what raised them, most often first.
+        expected: false alarms an hour that the calibrations promised on average; NaN: none did.
+        kept: share of the robots with no more than were promised; NaN: there is no robot.
+        watched, components: how many of a robot's components are watched on average, of how many;
+            NaN: not known, or the system judges all together.
+    """
+
+    hours: float
+    alarms: int
+    interval: Interval
+    warnings: int
+    standing: float
+    evidence: Tuple[Tuple[str, int], ...]
+    expected: float
+    kept: float
+    watched: float
+    components: float
+
+    @property
+    def per_hour(self) -> float:
+        """False alarms an hour; NaN: there is no time."""
+        return self.alarms / self.hours if self.hours else math.nan
+
+    @property
+    def warnings_per_hour(self) -> float:
+        """Suspicions or alarms an hour, likewise."""
+        return self.warnings / self.hours if self.hours else math.nan
+
+    @classmethod
+    def of(cls, rows: Sequence[Row]) -> Quiet:
+        """Return the figures of rows: of the time without a fault in them."""
+        hours, alarms = sum(row.hours for row in rows), sum(row.alarms for row in rows)
+        robots = list(grouped(rows, lambda row: row.subject.robot).values())
+        counts = [(sum(row.alarms for row in of_robot), sum(row.hours for row in of_robot))
+                  for of_robot in robots]
+        normal = [next((row for row in of_robot if row.fault == NORMAL), of_robot[0])
+                  for of_robot in robots]
+        return cls(
+            hours, alarms, rate_interval(counts), sum(row.warnings for row in rows),
+            sum(row.standing_hours for row in rows) / hours if hours else math.nan,
+            tuple(Counter(text for row in rows for text in row.evidence if text).most_common()),
+            _mean([row.expected for row in normal]),
+            _mean([count <= row.expected * time for row, (count, time) in zip(normal, counts)
+                   if row.expected is not None]),
+            _mean([row.watched for row in normal]), _mean([row.components for row in normal]))
+
+
+@dataclass(frozen=True)
+class Found:
+    """How faults were found.
+
+    Args:
+        latencies_s: from the onset to the first alarm, of each record; infinite where there was
+            none [s].
+        first, among_three: of the alarms that name somebody where somebody is guilty, those that
+            name a guilty one first, or among the first three, and the number of all of them.
+        at_end: likewise of what stands when the fault ends, whom it blames: a guilty one, or
+            nobody where nobody is guilty.
+        noticed_s: to the first suspicion or alarm [s], likewise.
+        stood_before: records in which a false alarm stood at the onset.
+        after: alarms for who was back already, and the number of records with somebody who was.
+    """
+
+    latencies_s: Tuple[float, ...]
+    first: Tuple[int, int]
+    among_three: Tuple[int, int]
+    at_end: Tuple[int, int]
+    noticed_s: Tuple[float, ...]
+    stood_before: int
+    after: Tuple[int, int]
+
+    @classmethod
+    def of(cls, rows: Iterable[Row]) -> Found:
+        """Return the figures of rows with a fault."""
+        known = list(rows)
+        after = [row.after for row in known if row.after is not None]
+        return cls(
+            tuple(_or_never(row.latency_s) for row in known), _counted(row.first for row in known),
+            _counted(row.among_three for row in known),
+            _counted(row.right_at_end for row in known),
+            tuple(_or_never(row.noticed_s) for row in known),
+            sum(row.stood_before for row in known), (sum(after), len(after)))
+
+    @property
+    def records(self) -> int:
+        """How many there are."""
+        return len(self.latencies_s)
+
+    @property
+    def median_s(self) -> float:
+        """The median latency [s]; infinite if fewer than half were found; NaN: no record."""
+        return quantile(self.latencies_s, 0.5)
+
+    def within(self, seconds: float = math.inf) -> int:
+        """Return how many were found in this time [s]."""
+        return sum(latency <= seconds and latency < math.inf for latency in self.latencies_s)
+
+    def share(self, seconds: float = math.inf) -> float:
+        """Return the share of them; NaN: there is no record."""
+        return self.within(seconds) / self.records if self.records else math.nan
+
+    def interval(self, seconds: float = math.inf) -> Interval:
+        """Return its 95 % interval."""
+        return (confidence.wilson(self.within(seconds), self.records) if self.records
+                else _NOTHING)
+
+
+def grouped(rows: Iterable[Row], key: Callable[[Row], _Key]) -> Dict[_Key, List[Row]]:
+    """Return the rows by a key, in the order in which keys come first."""
+    found: Dict[_Key, List[Row]] = {}
+    for row in rows:
+        found.setdefault(key(row), []).append(row)
+    return found
+
+
+def of_fault(rows: Iterable[Row], kind: str) -> List[Row]:
+    """Return the rows of a kind of fault; `crash` stands for those of every component, and an
+    empty one for all faults."""
+    return [row for row in rows if row.fault == kind or row.fault.startswith(f'{kind}:')
+            or not kind and row.fault != NORMAL]
+
+
+def normal(rows: Iterable[Row]) -> List[Row]:
+    """Return the rows without a fault."""
+    return [row for row in rows if row.fault == NORMAL]
+
+
+def quantile(values: Sequence[Optional[float]], fraction: float) -> float:
+    """Return a quantile by nearest rank; None counts as infinite. NaN: there is no value."""
+    ordered = sorted(_or_never(value) for value in values)
+    return ordered[max(0, math.ceil(fraction * len(ordered)) - 1)] if ordered else math.nan
+
+
+def rate_interval(robots: Sequence[Tuple[int, float]]) -> Interval:
+    """Return the 95 % interval of alarms an hour, by the alarms and the hours of every robot.
+
+    Alarms come in clusters: one robot has many, another one none. Where the robots differ by more
+    than chance, the alarms count for as much fewer as Pearson's chi-square is larger than its
+    degrees of freedom (quasi-Poisson; McCullagh and Nelder 1989, section 6.2).
+    """
+    alarms, hours = sum(robot[0] for robot in robots), sum(robot[1] for robot in robots)
+    if not hours:
+        return _NOTHING
+    spread = 1.0
+    if alarms and len(robots) > 1:
+        chi_square = sum((count - alarms / hours * time) ** 2 / (alarms / hours * time)
+                         for count, time in robots if time)
+        spread = max(1.0, chi_square / (len(robots) - 1))
+    return confidence.poisson_rate(alarms / spread, hours / spread)
+
+
+def columns(rows: Sequence[Row], kinds: Sequence[str]) -> Dict[str, Any]:
+    """Return all figures of rows as columns of a CSV file, with those of each kind of fault."""
+    quiet = Quiet.of(normal(rows))
+    found: Dict[str, Any] = {
+        'hours': quiet.hours, 'false_alarms': quiet.alarms, 'per_hour': quiet.per_hour,
+        'per_hour_low': quiet.interval[0], 'per_hour_high': quiet.interval[1],
+        'standing': quiet.standing, 'warnings_per_hour': quiet.warnings_per_hour,
+        'expected_per_hour': quiet.expected, 'robots_within_promise': quiet.kept,
+        'watched': quiet.watched, 'components': quiet.components,
+        'evidence': '; '.join(f'{text} {number}' for text, number in quiet.evidence)}
+    for kind in kinds:
+        found.update({f'{kind}: {name}': value for name, value in
+                      _of_kind(Found.of(of_fault(rows, kind))).items()})
+    return {name: _short(value) for name, value in found.items()}
+
+
+def _of_kind(found: Found) -> Dict[str, Any]:
+    low, high = found.interval()
+    return {'records': found.records, 'found': found.share(), 'low': low, 'high': high,
+            **{f'within {seconds:g} s': found.share(seconds) for seconds in WITHIN_S},
+            'median_s': found.median_s, 'first': _part(found.first),
+            'among_three': _part(found.among_three), 'at_end': _part(found.at_end),
+            'stood_before': found.stood_before, 'alarms_after': found.after[0]}
+
+
+def _short(value: Any) -> Any:
+    if not isinstance(value, float):
+        return value
+    return f'{value:.4g}' if math.isfinite(value) else ''
+
+
+def _part(counts: Tuple[int, int]) -> float:
+    return counts[0] / counts[1] if counts[1] else math.nan
+
+
+def _counted(values: Iterable[Optional[bool]]) -> Tuple[int, int]:
+    known = [value for value in values if value is not None]
+    return sum(known), len(known)
+
+
+def _or_never(value: Optional[float]) -> float:
+    return math.inf if value is None else value
+
+
+def _mean(values: Sequence[Optional[float]]) -> float:
+    known = [value for value in values if value is not None]
+    return sum(known) / len(known) if known else math.nan

@@ -1,1 +1,0 @@
-"""Robots of one make: what was learned on some watches another."""

@@ -1,0 +1,64 @@
+"""The robots that are simulated, and how much is recorded of each."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional, Tuple
+
+from self_awareness_evaluation.detectors import scenario_graph
+from self_awareness_evaluation.families.protocol import AFTER_DEATH_S, KINDS, Records
+from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, Learning, Robot
+from self_awareness_evaluation.simulated import records as simulated
+from self_awareness_evaluation.windowed_events import WindowedEvents
+from self_awareness_follow_me.scenario import load_scenario
+
+
+@dataclass(frozen=True)
+class Amount:
+    """How much of a robot of a family is judged.
+
+    Args:
+        hours: of normal operation.
+        faults: kinds, of protocol.KINDS.
+        most: faults of each kind; None: every component in turn.
+        after_death_s: a record lasts for so long after the death of who speaks when asked [s].
+    """
+
+    hours: float
+    faults: Tuple[str, ...] = KINDS
+    most: Optional[int] = None
+    after_death_s: float = AFTER_DEATH_S
+
+
+def of_family(family: str, seed: int, amount: Amount) -> Robot:
+    """Return a robot of a family, one of kinds.FAMILIES."""
+    records = Records(family, seed)
+    return Robot(
+        FAMILIES, f'{family} {seed}', records.robot.sources, records.robot.graph,
+        records.training, records.calibration, lambda: records.watched(amount.hours),
+        lambda: records.faults(amount.faults, amount.most, amount.after_death_s))
+
+
+def own(seed: int, faults: Tuple[str, ...]) -> Robot:
+    """Return the simulated follow-me robot; faults: kinds of simulation.InducedFault."""
+    scenario = load_scenario()
+
+    def normal(name: str, length_s: float) -> WindowedEvents:
+        return simulated.normal_record(scenario, seed, name, length_s)
+
+    return Robot(
+        OWN, f'{OWN} {seed}', {f'/{spec.name}' for spec in scenario.components},
+        scenario_graph(),
+        lambda learning: [normal(name, learning.training_s) for name in simulated.TRAINING_NAMES],
+        lambda learning: [normal(simulated.CALIBRATION_NAME, learning.calibration_s)],
+        lambda: [normal(NORMAL, simulated.NORMAL_TEST_S)],
+        lambda: (simulated.fault_record(scenario, seed, kind) for kind in faults))
+
+
+def own_learning(calibration_s: float) -> Learning:
+    """Return what is learned from the own robot: as in the paper, but for the calibration [s]."""
+    return Learning(len(simulated.TRAINING_NAMES), simulated.RECORD_S, 1, calibration_s)
+
+
+def family_of(robot: str) -> str:
+    """Return the name of a robot without its seed."""
+    return robot.rpartition(' ')[0]

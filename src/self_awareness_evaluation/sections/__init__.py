@@ -1,0 +1,1 @@
+"""What pages say of rows: a section for each measurement."""

@@ -1,0 +1,114 @@
+"""What judges the records: a system, or the method with one thing changed."""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import AbstractSet, Iterator, List, Optional, Sequence, Tuple
+
+from self_awareness import Tuning, TuningNumber
+from self_awareness.calibration import limits
+from self_awareness_evaluation import catalogue, tunings
+from self_awareness_evaluation.detectors import Evidence
+from self_awareness_evaluation.records import Learning
+from self_awareness_evaluation.systems import System
+
+CHANNEL, RULE, NUMBER = 'channel', 'rule', 'number'
+"""Kinds of changes: one is left out, one is switched off, one is halved or doubled."""
+
+KINDS = (CHANNEL, RULE, NUMBER)
+
+_HALF, _DOUBLE = 0.5, 2.0
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A system, with what is changed of it.
+
+    Args:
+        system: one of catalogue.NAMES.
+        learning: what it learns from; None: the records say themselves.
+        change: of the method, as tunings.tuning_of() reads it; empty: none.
+        budget: false alarms an hour that limits are made for; None: the usual ones, or the system
+            has none.
+        faults: whether it judges records with a fault, too.
+        kind: of the change, one of KINDS; empty: there is none, or it was asked for.
+    """
+
+    system: str
+    learning: Optional[Learning] = None
+    change: str = ''
+    budget: Optional[float] = None
+    faults: bool = True
+    kind: str = ''
+
+    def make(self, graph: AbstractSet[Tuple[str, str, str]]) -> System:
+        """Return the system, new; graph: of the robot."""
+        if self.system not in catalogue.EVIDENCE:
+            return catalogue.make(self.system)
+        return Evidence(set(graph) if self.system == catalogue.EVIDENCE[0] else set(),
+                        tuning=tunings.tuning_of(self.change),
+                        budget=limits.BUDGET if self.budget is None else self.budget)
+
+
+def side_by_side(systems: Sequence[str], learnings: Sequence[Optional[Learning]],
+                 change: str = '', budgets: Sequence[Optional[float]] = (None,)
+                 ) -> List[Variant]:
+    """Return systems as they are, but for one change of the method.
+
+    Args:
+        systems: names.
+        learnings: what each learns from, in turn.
+        change: see Variant.
+        budgets: that the evidence detector is told in turn; faults are judged with the first.
+    """
+    found = []
+    for learning in learnings:
+        for name in systems:
+            found += ([Variant(name, learning, change, budget, budget == budgets[0])
+                       for budget in budgets] if name in catalogue.EVIDENCE
+                      else [Variant(name, learning)])
+    return found
+
+
+def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Sequence[str]] = None,
+               kinds: Sequence[str] = KINDS) -> List[Variant]:
+    """Return the method as it is, and with one thing changed after the other.
+
+    Args:
+        channels: that are left out in turn; None: all.
+        numbers: that are switched off, halved and doubled; None: all.
+        kinds: of changes, of KINDS.
+
+    Raises:
+        ValueError: there is no such channel or number.
+    """
+    for name in channels or ():
+        Tuning().leave_out(name)
+    for name in numbers or ():
+        Tuning().get(name)
+    known = [number for number in Tuning.numbers() if numbers is None or number.name in numbers]
+    changes = [(CHANNEL, f'{tunings.WITHOUT}{name}') for name in
+               (Tuning.channels() if channels is None else channels)]
+    changes += [(RULE, tunings.told(number.name, number.off)) for number in known
+                if number.off is not None and number.off != number.default]
+    changes += [(NUMBER, tunings.told(number.name, value)) for number in known
+                for value in _values(number)]
+    method = catalogue.EVIDENCE[0]
+    return [Variant(method), *(Variant(method, change=change, kind=kind)
+                               for kind, change in changes if kind in kinds)]
+
+
+def _values(number: TuningNumber) -> Iterator[float]:
+    """Yield half of a number and twice that, within its range, unless that is known already.
+
+    A pure number that is whole stays whole: it counts something.
+    """
+    default = float(number.default)
+    seen = {default, number.off}
+    for factor in (_HALF, _DOUBLE):
+        value = min(max(factor * default, number.least), number.most)
+        if not number.unit and default.is_integer():
+            value = float(math.floor(value + 0.5))
+        if value not in seen:
+            seen.add(value)
+            yield value

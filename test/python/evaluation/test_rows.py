@@ -1,0 +1,201 @@
+"""What is measured of a system on a record, and what rows come to."""
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, List, Optional
+
+import numpy as np
+import pytest
+
+from self_awareness import DEFAULT_WINDOW
+from self_awareness.calibration import confidence
+from self_awareness_evaluation import row_files
+from self_awareness_evaluation.detectors import Evidence
+from self_awareness_evaluation.figures import Found, Quiet, quantile, rate_interval
+from self_awareness_evaluation.records import NORMAL, FaultRecord, Learning
+from self_awareness_evaluation.rows import Row, Subject, fault_row, normal_row
+from self_awareness_evaluation.systems import SUSPICION, Judged, SystemAlarm
+from self_awareness_evaluation.windowed_events import WindowedEvents
+
+from evaluation_robot import START, robot
+
+SUBJECT = Subject('families', 'timers 1', '2 x 60 s + 1 x 60 s', 'evidence', budget=0.5)
+
+
+def at(window: int) -> int:
+    """Return the end of a window [ns]."""
+    return START + (window + 1) * DEFAULT_WINDOW
+
+
+def judged(alarms: List[SystemAlarm], suspicion: Optional[List[int]] = None,
+           suspicions: Optional[List[SystemAlarm]] = None) -> Judged:
+    """Return 100 windows, of which 50 settle."""
+    start = START + DEFAULT_WINDOW * np.arange(100, dtype=np.int64)
+    suspicious = np.zeros(100, dtype=bool)
+    suspicious[suspicion or []] = True
+    return Judged(start, np.zeros(100, dtype=bool), np.zeros(100), np.arange(100) < 50, alarms,
+                  -1.0, suspicious, suspicions or [])
+
+
+def fault_at(window: int, back: Optional[int] = None, culprit: str = '/a') -> FaultRecord:
+    recording = WindowedEvents([], np.array([START]), np.array([0]), at(99))
+    return FaultRecord('crash', (culprit,) if culprit else (), recording, at(window) - 1, back)
+
+
+def row(**changed: Any) -> Row:
+    return replace(Row(SUBJECT, NORMAL, hours=1.0), **changed)
+
+
+def test_half_as_many_starts_are_calibrated_on_but_one_at_least() -> None:
+    assert [Learning.of(starts, 150.0, 60.0).calibrations for starts in (1, 2, 4, 8)] \
+        == [1, 1, 2, 4]
+    assert str(Learning.of(4, 150.0, 60.0)) == '4 x 150 s + 2 x 60 s'
+
+
+def test_normal_operation() -> None:
+    found = normal_row(SUBJECT, judged(
+        [SystemAlarm(at(60), at(70), True, ['/a'], 'answers')], [80, 81, 90],
+        [SystemAlarm(at(80), at(82), True, [], 'new mode')]), 0.4, 3, 4)
+    assert found.hours == pytest.approx(5.0 / 3600.0)
+    assert found.standing_hours == pytest.approx(1.0 / 3600.0)
+    assert (found.alarms, found.warnings, found.evidence) == (1, 3, ('answers',))
+    assert (found.suspicions, found.expected, found.watched, found.components) == (
+        ('new mode',), 0.4, 3, 4)
+
+
+def test_a_fault() -> None:
+    alarms = [SystemAlarm(at(60), at(62), True, ['/a'], 'pairs'),
+              SystemAlarm(at(80), at(90), True, ['/b', '/a'])]
+    found = fault_row(SUBJECT, fault_at(70), judged(alarms), 1)
+    assert found.latency_s == pytest.approx(1.0, abs=1e-6)
+    assert (found.first, found.among_three, found.stood_before) == (False, True, False)
+    # What was before the onset is normal operation.
+    assert found.hours == pytest.approx(2.0 / 3600.0)
+    assert (found.alarms, found.evidence, found.watched) == (1, ('pairs',), 1)
+    found = fault_row(SUBJECT, fault_at(59), judged(alarms))
+    assert (found.latency_s, found.first) == (pytest.approx(0.1, abs=1e-6), True)
+    found = fault_row(SUBJECT, fault_at(90), judged(alarms))
+    assert (found.latency_s, found.first, found.among_three) == (None, None, None)
+    found = fault_row(SUBJECT, fault_at(70, culprit=''), judged(alarms))
+    assert found.latency_s is not None and found.first is None
+
+
+def test_what_is_said_when_the_fault_ends() -> None:
+    suspected = SystemAlarm(at(72), at(74), True, ['/b'], '', SUSPICION, '/b', 'late')
+    stands = SystemAlarm(at(74), at(99), False, ['/b', '/a'], '', culprit='/a', kind='died',
+                         incident=(at(72), at(99), False))
+    found = fault_row(SUBJECT, fault_at(70), judged([stands], suspicions=[suspected]))
+    assert (found.first, found.right_at_end) == (False, True)
+    assert (found.level, found.culprit, found.kind) == ('ERROR', '/a', 'died')
+    assert (found.opened_s, found.closed_s) == (pytest.approx(0.2, abs=1e-6), None)
+    # By then it is over, and somebody else is only suspected.
+    over = replace(stands, end=at(80), cleared=True, incident=None)
+    later = replace(suspected, start=at(90), end=at(99), cleared=False)
+    found = fault_row(SUBJECT, fault_at(70), judged([over], suspicions=[later]))
+    assert (found.level, found.culprit, found.right_at_end) == (SUSPICION, '/b', False)
+    found = fault_row(SUBJECT, fault_at(70), judged([over]))
+    assert (found.level, found.right_at_end) == ('', None)
+    assert (found.opened_s, found.closed_s) == (pytest.approx(0.4, abs=1e-6),
+                                                pytest.approx(1.0, abs=1e-6))
+    nobody = replace(stands, culprit='', kind='busy machine')
+    found = fault_row(SUBJECT, fault_at(70), judged([nobody]))
+    assert (found.right_at_end, found.excused) == (False, True)
+
+
+def test_an_incident_begins_with_its_first_suspicion() -> None:
+    system = Evidence(set())
+    system.train([robot(60.0, 1), robot(60.0, 2)])
+    system.calibrate([robot(60.0, 3)])
+    onset = START + 20_000_000_000
+    record = FaultRecord('crash', ('/player',), robot(40.0, 4, silent=((20.0, 40.0),)), onset)
+    found = fault_row(SUBJECT, record, system.judge(record.recording), 1)
+    assert (found.first, found.right_at_end, found.kind) == (True, True, 'died')
+    assert found.opened_s is not None and found.latency_s is not None
+    assert 0.0 < found.opened_s <= found.latency_s < 1.0 and found.closed_s is None
+
+
+def test_alarms_for_who_is_back_are_counted_apart() -> None:
+    alarms = [SystemAlarm(at(71), at(90), True, ['/a']), SystemAlarm(at(121), at(125), True, []),
+              SystemAlarm(at(131), at(140), True, ['/a'])]
+    record = fault_at(70, at(80))  # windows of 0.1 s, so 5 s are fifty
+    found = fault_row(SUBJECT, record, judged(alarms))
+    assert found.latency_s == pytest.approx(0.1, abs=1e-6) and found.after == 1
+    found = fault_row(SUBJECT, record, judged(alarms[2:]))
+    assert (found.latency_s, found.first, found.after) == (None, None, 1)
+    assert fault_row(SUBJECT, fault_at(70), judged(alarms)).after is None
+
+
+def test_a_false_alarm_that_stands_at_the_onset_is_told() -> None:
+    for alarm, stood in ((SystemAlarm(at(60), at(69), True, []), False),
+                         (SystemAlarm(at(60), at(71), True, []), True),
+                         (SystemAlarm(at(60), at(99), False, []), True),
+                         (SystemAlarm(at(71), at(99), False, []), False)):
+        assert fault_row(SUBJECT, fault_at(70), judged([alarm])).stood_before == stood
+
+
+def test_a_suspicion_is_told_too() -> None:
+    found = judged([], [72], [SystemAlarm(at(72), at(73), True, ['/slam'], '', SUSPICION)])
+    of_fault = fault_row(SUBJECT, fault_at(69), found)
+    assert (of_fault.latency_s, of_fault.noticed_s) == (None, pytest.approx(0.3))
+    # One that stands at the onset is no finding.
+    assert fault_row(SUBJECT, replace(fault_at(72), onset=at(72)), found).noticed_s is None
+
+
+def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:
+    path = tmp_path / 'rows.csv'
+    rows = [row(alarms=2, evidence=('a', 'b'), expected=0.25),
+            row(fault='crash', source='/a', first=True, latency_s=0.5, level='ERROR'),
+            row(refused='too short, or so')]
+    row_files.save(path, rows, Row)
+    assert row_files.load(path, Row) == rows
+    path.write_text('part,robot\na,b\n', encoding='utf-8')
+    with pytest.raises(ValueError, match='rows.csv, line 2: there is no learning'):
+        row_files.load(path, Row)
+    path.write_text('part,robot,learning,system,fault,alarms\na,b,c,d,e,many\n', encoding='utf-8')
+    with pytest.raises(ValueError, match="rows.csv, line 2: alarms is 'many', no number"):
+        row_files.load(path, Row)
+
+
+def test_figures_of_normal_operation() -> None:
+    other = replace(SUBJECT, robot='timers 2')
+    quiet = Quiet.of([
+        row(alarms=3, standing_hours=0.004, warnings=4, evidence=('answers',) * 3, expected=0.25),
+        row(alarms=1, warnings=4, evidence=('answers',)),
+        row(subject=other, hours=2.0, expected=0.5, watched=3, components=4)])
+    assert (quiet.hours, quiet.alarms, quiet.per_hour) == (4.0, 4, 1.0)
+    assert (quiet.standing, quiet.warnings_per_hour) == (pytest.approx(0.001), 2.0)
+    assert quiet.evidence == (('answers', 4),)
+    assert quiet.expected == pytest.approx((0.25 + 0.5) / 2)  # the mean of the robots
+    assert (quiet.kept, quiet.watched, quiet.components) == (0.5, 3.0, 4.0)
+    nothing = Quiet.of([])
+    assert math.isnan(nothing.per_hour) and math.isnan(nothing.interval[0])
+
+
+def test_robots_that_differ_widen_the_interval() -> None:
+    assert rate_interval([(5, 10.0), (5, 10.0)]) == confidence.poisson_rate(10, 20.0)
+    # Chi-square is 25 / 5 + 25 / 5 = 10 at one degree of freedom.
+    assert rate_interval([(10, 10.0), (0, 10.0)]) == pytest.approx(confidence.poisson_rate(1, 2.0))
+    assert rate_interval([(0, 10.0), (0, 10.0)]) == confidence.poisson_rate(0, 20.0)
+
+
+def test_figures_of_faults() -> None:
+    found = Found.of([
+        row(source='/a', latency_s=0.4, first=True, among_three=True, level='ERROR', culprit='/a'),
+        row(source='/a', latency_s=4.0, first=False, among_three=True, level='ERROR',
+            culprit='/b'),
+        row(source='/a', stood_before=True, after=2)])
+    assert (found.records, found.stood_before) == (3, 1)
+    assert [found.within(s) for s in (0.3, 1.0, 5.0)] == [0, 1, 2]
+    assert found.share() == pytest.approx(2 / 3)
+    assert found.interval() == confidence.wilson(2, 3)
+    assert (found.median_s, found.first, found.among_three, found.at_end, found.after) == (
+        4.0, (1, 2), (2, 2), (1, 2), (2, 1))
+    none = Found.of([])
+    assert none.records == 0 and math.isnan(none.share()) and math.isnan(none.median_s)
+
+
+def test_what_was_not_found_took_for_ever() -> None:
+    assert quantile([3.0, 1.0, None, 2.0], 0.5) == 2.0
+    assert quantile([1.0, None, None], 0.5) == math.inf
