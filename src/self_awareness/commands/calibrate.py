@@ -26,9 +26,9 @@ from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, replacing
 from self_awareness.parts import BagPart, Named, by_folder, look
 from self_awareness.recordings import RecordingEvents
-from self_awareness.reporting import coverage_text, csv_text, evidence_report
-from self_awareness.reporting.number_text import rounded
+from self_awareness.reporting import coverage_text, evidence_report
 from self_awareness.reporting.plots import save_roc
+from self_awareness.reporting.text import cell, rounded
 from self_awareness.stamps import SECOND_NS
 
 _COLUMNS = ('bag', 'fault', 'window_start_ns', 'events', 'unknown', 'score', 'label')
@@ -319,7 +319,7 @@ def _save_csv(path: str, runs: Sequence[JudgedRun]) -> None:
             writer = csv.writer(file, lineterminator='\n')
             writer.writerow(_COLUMNS)
             for judged in runs:
-                part = csv_text.cell(str(judged.run.source.part))
+                part = cell(str(judged.run.source.part))
                 columns = (judged.verdicts.start, judged.verdicts.events, judged.verdicts.unknown,
                            judged.scores, judged.labels)
                 for start, events, unknown, score, label in zip(

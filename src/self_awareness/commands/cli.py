@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import os
 import re
@@ -9,7 +10,9 @@ import signal
 import sys
 from dataclasses import replace
 from types import FrameType
-from typing import Callable, Iterable, List, Optional, Sequence, TypeVar
+from typing import Any, Callable, Iterable, List, Optional, Sequence, TypeVar
+
+import rosgraph
 
 from self_awareness import (SHORTEST_WINDOW, VERSION, BagError, DetectorParameters, ModelFileError,
                             TrainedModel, UnknownEvents, printable, recordings)
@@ -31,6 +34,24 @@ _UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
             'error': UnknownEvents.ERROR}
 _MOST = 10_000
 _MOST_WINDOWS = 100_000
+
+
+def parser(program: str, about: Optional[str], epilog: str = '') -> argparse.ArgumentParser:
+    """Return a parser without arguments yet.
+
+    Args:
+        program: its name.
+        about: the docstring of its module: how it is started, a colon, and what it does.
+        epilog: whose lines stay as they are.
+    """
+    return argparse.ArgumentParser(
+        prog=program, description=(about or '').split(': ', 1)[1].strip(), epilog=epilog,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
+def of_node(argv: Optional[Sequence[str]]) -> List[str]:
+    """Return the arguments of a node: under roslaunch, its name and remappings come with them."""
+    return list(rosgraph.myargv(sys.argv if argv is None else ['', *argv])[1:])
 
 
 def run(parser: argparse.ArgumentParser, work: Work, argv: Optional[Sequence[str]]) -> int:
@@ -271,6 +292,11 @@ def print_lines(lines: Iterable[str]) -> None:
         print(line)
 
 
+def print_values(values: Any) -> None:
+    """Print plain values as JSON."""
+    print(json.dumps(values, indent=2, allow_nan=False))
+
+
 def say_skipped(program: str, bad: Iterable[str]) -> None:
     """Say at the end which recordings were left out."""
     for line in bad:
@@ -302,12 +328,8 @@ def read_recordings(program: str, model: TrainedModel, named: Named, skip_bad: b
     Raises:
         BadRecordingsError: one cannot be used and is not to be skipped, or none can.
     """
-    events = []
-    for part in named.parts:
-        try:
-            events.append(replace(read_recording(program, model, read(part)), part=part))
-        except (BagError, ValueError) as error:
-            named.bad.append(str(error))
+    events = list(named.each(
+        lambda part: replace(read_recording(program, model, read(part)), part=part)))
     named.check(skip_bad and bool(events))
     return events
 

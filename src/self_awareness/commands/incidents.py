@@ -4,7 +4,6 @@ from __future__ import annotations
 import argparse
 import fnmatch
 import glob
-import json
 import os
 import re
 import time
@@ -46,9 +45,8 @@ def _incidents(arguments: argparse.Namespace) -> None:
         read = [(path, [each for each in kept if _is_asked_for(each, arguments)])
                 for path, kept in read]
     if arguments.json:
-        values = [{'file': path, **incidents_text.as_values(each, actions[path])}
-                  for path, kept in read for each in kept]
-        print(json.dumps(values, indent=2, allow_nan=False))
+        cli.print_values([{'file': path, **incidents_text.as_values(each, actions[path])}
+                          for path, kept in read for each in kept])
     elif arguments.id is not None:
         for path, kept in read:
             for each in kept:
@@ -132,9 +130,7 @@ def _stamp(text: str) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='incidents', description=(__doc__ or '').split(': ', 1)[1].strip(), epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('incidents', __doc__, _EPILOG)
     parser.add_argument('id', type=int, nargs='?', metavar='ID',
                         help='show all of this one, and how to make its report')
     parser.add_argument('--file', action='append', metavar='FILE',

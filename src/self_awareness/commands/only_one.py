@@ -135,9 +135,7 @@ def _set(caller: str, key: str, value: Any) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog=_PROGRAM, description=__doc__.split(': ', 1)[1].strip(), epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser(_PROGRAM, __doc__, _EPILOG)
     parser.add_argument('--parameters', metavar='NAMESPACE',
                         help='move the parameters of this namespace to the private ones of the '
                              'node, if it is started')

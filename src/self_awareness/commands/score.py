@@ -23,8 +23,7 @@ from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUE
 from self_awareness.parts import BagPart, look
 from self_awareness.recordings import (RecordingEvents, in_words, unknown_modes,
                                        unknown_types)
-from self_awareness.reporting import coverage_text, csv_text
-from self_awareness.reporting.number_text import of_limit
+from self_awareness.reporting import coverage_text
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
 from self_awareness.reporting.report import neighbours
 from self_awareness.reporting.report.incidents import as_values, incidents, place_of
@@ -32,6 +31,7 @@ from self_awareness.reporting.report.intervals import intervals
 from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import check_installed, check_name, save_report
 from self_awareness.reporting.report.section import section
+from self_awareness.reporting.text import cell, of_limit
 from self_awareness.results import check_apart, result_bag
 from self_awareness.stamps import SECOND_NS, span
 
@@ -241,7 +241,7 @@ def _save_csv(path: str, judged: Sequence[Judged], threshold: Optional[float]) -
             writer.writerow(_COLUMNS)
             for each in judged:
                 verdicts = each.verdicts
-                part = csv_text.cell(str(each.recording.part))
+                part = cell(str(each.recording.part))
                 columns = (verdicts.start, verdicts.events, verdicts.unknown, verdicts.score,
                            verdicts.abnormal)
                 for begin in range(0, len(verdicts.start), _ROWS):  # lists take much memory

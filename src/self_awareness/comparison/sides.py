@@ -9,7 +9,7 @@ from typing import Dict, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (BagError, EventType, EvidenceCounts, EvidenceModel, TrainedModel,
+from self_awareness import (EventType, EvidenceCounts, EvidenceModel, TrainedModel,
                             Training, recordings, recordings_in_event_log)
 from self_awareness.parts import BagPart, Named, look
 from self_awareness.recordings import RecordingEvents
@@ -163,12 +163,7 @@ def _recording_side(name: str, named: Named, like: TrainedModel, skip_bad: bool 
                         True, False, like.tuning)
     ends: Dict[Kind, End] = {}
     counted = 0
-    for part in named.parts:
-        try:
-            recording = recordings.read(like, part)
-        except (BagError, ValueError) as error:
-            named.bad.append(str(error))
-            continue
+    for recording in named.each(lambda part: recordings.read(like, part)):
         counted += 1
         training.add_events(recording.event_types, recording.stamps, recording.ids,
                             recording.recording, clock_steps=recording.clock_steps)

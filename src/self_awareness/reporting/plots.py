@@ -11,7 +11,7 @@ import numpy as np
 
 from self_awareness import Roc, RocPoint
 from self_awareness.output_files import replacing
-from self_awareness.reporting.number_text import percent
+from self_awareness.reporting.text import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

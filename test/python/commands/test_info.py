@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, Dict
 
 import pytest
@@ -14,7 +15,7 @@ from conftest import robot, train_tuned
 
 from self_awareness import EvidenceModel, TrainedModel, Tuning
 from self_awareness.commands import calibrate, convert, info, train
-from self_awareness.reporting.histogram_text import draw
+from self_awareness.reporting.delay_bins import drawn, paper_bins
 
 LASER, SLAM = '/laser /scan std_msgs/String', '/slam /map std_msgs/String'
 
@@ -188,8 +189,10 @@ def test_an_ambiguous_or_unknown_event_type_lists_the_candidates(model_file: str
 
 
 def test_a_wide_histogram_is_merged_into_rows_that_fit_a_screen() -> None:
-    counts = {3: 10, 500: 80, 999: 9, 10 ** 12: 1}
-    lines = draw(counts, 10_000_000, 0, 999, 20)
+    trained: Any = SimpleNamespace(
+        histogram=lambda *_: {3: 10, 500: 80, 999: 9, 10 ** 12: 1}, quantile=lambda *_: 999,
+        bin_size=10_000_000, horizon_bins=0)
+    lines = drawn(paper_bins(trained, 0, 1), 20)
     assert len(lines) == 21
     shown = [int(line.split()[3]) if '-' in line else int(line.split()[2]) for line in lines]
     assert sum(shown) == 100 and shown[0] == 10 and shown[-1] == 1 and max(shown) == 80

@@ -4,28 +4,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Dict, List, Optional, Sequence
 
-from self_awareness.reporting.number_text import percent
-from self_awareness.reporting.report.delays import Histogram, histogram_of
+from self_awareness.reporting.report.against import Evidence, against
 from self_awareness.reporting.report.incidents import MOST_DETAILS, Incident
 from self_awareness.reporting.report.intervals import Interval
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.neighbours import Neighbourhood, neighbourhood
 from self_awareness.reporting.report.next_steps import NextSteps, next_steps
-from self_awareness.reporting.report.rates import Counts, counts_of
 from self_awareness.reporting.report.timeline import Overview, strongest_track
-
-
-@dataclass(frozen=True)
-class Evidence:
-    """What speaks against a suspect.
-
-    Args:
-        histogram: of delays; None: it is not about a delay.
-        counts: by time; None: it is not about a rate.
-    """
-
-    histogram: Optional[Histogram]
-    counts: Optional[Counts]
+from self_awareness.reporting.text import percent
 
 
 @dataclass(frozen=True)
@@ -35,13 +21,13 @@ class Details:
     Args:
         decided: which track was strongest when the main interval was raised, in words; empty: not
             known.
-        evidence: against each suspect that the main interval names.
+        evidence: against each suspect that the main interval names; None: it cannot be drawn.
         graph: who publishes to whom near the cause; None: not known.
         next: what to look at.
     """
 
     decided: str
-    evidence: List[Evidence]
+    evidence: List[Optional[Evidence]]
     graph: Optional[Neighbourhood]
     next: NextSteps
 
@@ -54,15 +40,10 @@ def details(judged: Judged, shown: Overview, found: Sequence[Incident]) -> Dict[
     """
     steps = next_steps(judged, found)
     return {incident.key: Details(_decided(judged, shown, incident.main),
-                                  _evidence(judged, incident), _graph(judged, incident),
-                                  steps[incident.key])
+                                  [against(judged, incident.main.of, suspect.of)
+                                   for suspect in incident.main.named],
+                                  _graph(judged, incident), steps[incident.key])
             for incident in found[:MOST_DETAILS]}
-
-
-def _evidence(judged: Judged, incident: Incident) -> List[Evidence]:
-    return [Evidence(histogram_of(judged, suspect.of),
-                     counts_of(judged, incident.main.of, suspect.of))
-            for suspect in incident.main.named]
 
 
 def _graph(judged: Judged, incident: Incident) -> Optional[Neighbourhood]:
@@ -73,8 +54,6 @@ def _graph(judged: Judged, incident: Incident) -> Optional[Neighbourhood]:
 
 def _decided(judged: Judged, found: Overview, main: Interval) -> str:
     time = main.start - judged.by.trained.window / 2e9  # in the window that raised it
-    if found.evidence is None:
-        return ''
     strongest = strongest_track(found, judged, time)
     if strongest is None:
         return ''

@@ -103,10 +103,8 @@ def script_json(value: Any) -> str:
 def _drawn(incident: Incident, details: Optional[Details]) -> Dict[str, Any]:
     drawn: Dict[str, figures.Figure] = {}
     for index, evidence in enumerate([] if details is None else details.evidence):
-        if evidence.histogram is not None:
-            drawn[f'{incident.key}-delays-{index}'] = figures.histogram(evidence.histogram)
-        elif evidence.counts is not None:
-            drawn[f'{incident.key}-delays-{index}'] = figures.counts(evidence.counts)
+        if evidence is not None:
+            drawn[f'{incident.key}-delays-{index}'] = figures.evidence(evidence)
     return {'range': [round(incident.main.start, 3), round(incident.main.end, 3)],
             'figures': drawn}
 

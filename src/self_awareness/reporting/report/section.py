@@ -7,7 +7,7 @@ from typing import Dict, List, Optional, Tuple
 import numpy as np
 
 from self_awareness.recordings import in_words
-from self_awareness.reporting import coverage_text, unheard_text
+from self_awareness.reporting import coverage_text
 from self_awareness.reporting.report import intervals
 from self_awareness.reporting.report.details import Details, details
 from self_awareness.reporting.report.headline import clock
@@ -85,7 +85,7 @@ def section(judged: Judged, key: str) -> Section:
     return Section(key, str(judged.recording.part), _facts(judged),
                    _summary(judged, happened), found, happened, shown,
                    total - len(listed), unjudged(judged), _watched(judged),
-                   unheard_text.lines(unheard_text.summarise(judged.by.trained.unheard)))
+                   coverage_text.unheard_lines(coverage_text.unheard(judged.by.trained.unheard)))
 
 
 def _watched(judged: Judged) -> List[Tuple[str, ...]]:

@@ -1,4 +1,7 @@
-"""The score over the whole recording, and the evidence of each component: what is drawn of it."""
+"""The score over the whole recording, and the evidence of each component: what is drawn of it.
+
+It is cut into stretches: long ones, and single windows near the alarms.
+"""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -6,12 +9,21 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EvidenceLanes, Track
-from self_awareness.reporting.report import columns
+from self_awareness import Alarm, EvidenceLanes, Track, Verdicts
 from self_awareness.reporting.report.judged import Judged
+from self_awareness.stamps import SECOND_NS
 
 MOST_LANES = 40
 """Components that have a lane of their own, at most so many."""
+MOST_LONG = 1000
+"""Stretches of the whole recording, at most about so many."""
+MOST_FINE = 1500
+"""Windows that are stretches of their own, at most so many."""
+MOST_CELLS = 20_000_000
+"""Stretches times components, at most so many: they are kept in memory."""
+
+_BEFORE = 5 * SECOND_NS
+_AFTER = 15 * SECOND_NS
 
 
 @dataclass(frozen=True)
@@ -83,10 +95,42 @@ def overview(judged: Judged, first: Sequence[str]) -> Overview:
     """
     verdicts = judged.verdicts
     # There are no more components than event types.
-    begins = columns.cut(verdicts, len(judged.by.trained.event_types))
+    begins = cut(verdicts, len(judged.by.trained.event_types))
     found = judged.lanes(verdicts.start[begins])
     return Overview(_timeline(judged, begins),
                     None if found is None else select_lanes(found, first), found)
+
+
+def cut(verdicts: Verdicts, components: int) -> np.ndarray:
+    """Return the index of the first window of each stretch, in order.
+
+    Near the beginning of an alarm, and if there is room of a suspicion, each window is one.
+
+    Args:
+        verdicts: at least one window.
+        components: of the model.
+    """
+    windows = len(verdicts.start)
+    most = max(1, min(MOST_LONG + MOST_FINE, MOST_CELLS // max(components, 1)))
+    long = min(MOST_LONG, most)
+    step = -(-windows // long)
+    first = np.zeros(windows, dtype=bool)
+    first[::step] = True
+    room = most - int(first.sum())
+    for begin, end in _near(verdicts, [*verdicts.alarms, *verdicts.suspicions]):
+        end = min(end, begin + max(room, 0))
+        room -= int((~first[begin:end]).sum())
+        first[begin:end] = True
+        if end < windows:
+            first[end] = True  # the long stretch goes on after it
+    return np.flatnonzero(first)
+
+
+def _near(verdicts: Verdicts, stretches: Sequence[Alarm]) -> List[Sequence[int]]:
+    starts = np.array([stretch.begin for stretch in stretches], dtype=np.int64)
+    begins = np.searchsorted(verdicts.start, starts - _BEFORE)
+    ends = np.searchsorted(verdicts.start, starts + _AFTER)
+    return list(zip(begins.tolist(), ends.tolist()))
 
 
 def strongest_track(found: Overview, judged: Judged, time: float) -> Optional[Tuple[Track, float]]:
@@ -117,7 +161,7 @@ def _timeline(judged: Judged, begins: np.ndarray) -> Timeline:
     threshold = judged.by.threshold
     unit = abs(threshold) if threshold else 1.0
     starts = (np.append(verdicts.start, verdicts.start[-1] + window)
-              - judged.recording.origin) / 1e9
+              - judged.recording.origin) / SECOND_NS
     scores = verdicts.score / unit
     if judged.by.evidence is None:
         scores = np.nan_to_num(scores)  # the paper's score of silence is 0
