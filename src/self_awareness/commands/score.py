@@ -10,8 +10,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence
 
-import numpy as np
-
 from self_awareness import (EVIDENCE_THRESHOLD, Alarm, BagError, EvidenceModel, PaperModel,
                             Suspect, TrainedModel)
 from self_awareness import accepted_file, alarms
@@ -21,16 +19,16 @@ from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
                                          replacing)
 from self_awareness.parts import BagPart, look
-from self_awareness.recordings import (RecordingEvents, in_words, unknown_modes,
-                                       unknown_types)
+from self_awareness.recordings import RecordingEvents, in_words, unknown
 from self_awareness.reporting import coverage_text
-from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
+from self_awareness.reporting.plots import ScorePlot, save_scores
 from self_awareness.reporting.report import neighbours
 from self_awareness.reporting.report.incidents import as_values, incidents, place_of
 from self_awareness.reporting.report.intervals import intervals
 from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import check_installed, check_name, save_report
 from self_awareness.reporting.report.section import section
+from self_awareness.reporting.report.timeline import timeline
 from self_awareness.reporting.text import cell, of_limit
 from self_awareness.results import check_apart, result_bag
 from self_awareness.stamps import SECOND_NS, span
@@ -126,7 +124,7 @@ def _score(arguments: argparse.Namespace) -> int:
     if arguments.json is not None:
         _save_json(arguments.json, judged, missing, named.bad)
     if arguments.plot is not None:
-        save_scores(arguments.plot, [_plot(each, trained.window, threshold) for each in judged])
+        save_scores(arguments.plot, [_plot(each) for each in judged])
     if arguments.report is not None:
         save_report(arguments.report, [section(each, f'recording-{number}')
                                        for number, each in enumerate(judged, 1)])
@@ -196,21 +194,15 @@ def _words(recording: RecordingEvents, suspect: Suspect) -> str:
 
 
 def _print_unknown(recording: RecordingEvents, trained: TrainedModel) -> None:
-    known = len(trained.event_types)
-    counts = np.bincount(recording.ids, minlength=known)
-    new = set(unknown_types(trained, recording))
-    modes = set(unknown_modes(trained, recording))
-    for said, kinds in (
-            ('event types never seen in training', new),
-            ('modes never seen in training: they say nothing', modes),
-            ('event types that nobody subscribed to in training: they are not judged',
-             set(range(known, len(counts))) - new - modes)):
-        found = sorted((-int(counts[kind]), str(recording.event_types[kind])) for kind in kinds
-                       if counts[kind])
+    for said, found in zip(
+            ('event types never seen in training',
+             'modes never seen in training: they say nothing',
+             'event types that nobody subscribed to in training: they are not judged'),
+            unknown(trained, recording)):
         if found:
             print(f'  {said}:')
         for count, name in found:
-            print(f'    {name}: {-count}')
+            print(f'    {name}: {count}')
 
 
 def _save_json(path: str, judged: Sequence[Judged], missing: str, bad: Sequence[str]) -> None:
@@ -245,31 +237,19 @@ def _save_csv(path: str, judged: Sequence[Judged], threshold: Optional[float]) -
                 columns = (verdicts.start, verdicts.events, verdicts.unknown, verdicts.score,
                            verdicts.abnormal)
                 for begin in range(0, len(verdicts.start), _ROWS):  # lists take much memory
-                    for start, events, unknown, score, abnormal in zip(
+                    for start, events, strange, score, abnormal in zip(
                             *(column[begin:begin + _ROWS].tolist() for column in columns)):
-                        writer.writerow((part, start, events, unknown,
+                        writer.writerow((part, start, events, strange,
                                          '' if math.isnan(score) else repr(score), limit,
                                          int(abnormal)))
 
 
-def _plot(judged: Judged, window: int, threshold: Optional[float]) -> ScorePlot:
-    recording, verdicts = judged.recording, judged.verdicts
-
-    def seconds(stamps: np.ndarray) -> np.ndarray:
-        return (stamps - recording.origin) / SECOND_NS
-
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], verdicts.settling.astype(np.int8), [0]))))
-    starts = seconds(np.append(verdicts.start, verdicts.start[-1] + window))
-    return ScorePlot(
-        title=f'{recording.part}: score of windows of {window / SECOND_NS:g} s',
-        times=starts[:-1],
-        scores=verdicts.score,
-        abnormal=verdicts.abnormal & ~verdicts.settling,
-        threshold=threshold,
-        settling=[(float(starts[a]), float(starts[b])) for a, b in edges.reshape(-1, 2)],
-        alarms=[NamedAlarm(float(seconds(alarm.begin)), float(seconds(alarm.end)),
-                           alarm.suspects[0].component if alarm.suspects else '')
-                for alarm in verdicts.alarms])
+def _plot(judged: Judged) -> ScorePlot:
+    named = [(judged.seconds(alarm.begin), judged.seconds(alarm.end),
+              alarm.suspects[0].component if alarm.suspects else '')
+             for alarm in judged.verdicts.alarms]
+    return ScorePlot(f'{judged.recording.part}: score of windows of '
+                     f'{judged.by.trained.window / SECOND_NS:g} s', timeline(judged), named)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -35,6 +35,7 @@ class Timeline:
         lowest: score of each stretch, in units of the threshold's size; NaN: none.
         highest: likewise.
         abnormal: whether a window of it is.
+        silent: whether a window of it has no score, as the paper's detector has none of silence.
         unit: the threshold's size; 1: not calibrated.
         limit: the threshold in this unit: -1 of evidence, 1 of the paper's; None: not calibrated.
         settling: start and end [s] of the times in which no alarm is raised.
@@ -44,6 +45,7 @@ class Timeline:
     lowest: np.ndarray
     highest: np.ndarray
     abnormal: np.ndarray
+    silent: np.ndarray
     unit: float
     limit: Optional[float]
     settling: List[Tuple[float, float]]
@@ -94,11 +96,9 @@ def overview(judged: Judged, first: Sequence[str]) -> Overview:
         first: components whose lanes come first, the most important one first.
     """
     verdicts = judged.verdicts
-    # There are no more components than event types.
-    begins = cut(verdicts, len(judged.by.trained.event_types))
+    begins = _begins(judged)
     found = judged.lanes(verdicts.start[begins])
-    return Overview(_timeline(judged, begins),
-                    None if found is None else select_lanes(found, first), found)
+    return Overview(timeline(judged), None if found is None else select_lanes(found, first), found)
 
 
 def cut(verdicts: Verdicts, components: int) -> np.ndarray:
@@ -156,8 +156,14 @@ def select_lanes(found: EvidenceLanes, first: Sequence[str]) -> Lanes:
                  float(largest[rest].max()) if rest else 0.0)
 
 
-def _timeline(judged: Judged, begins: np.ndarray) -> Timeline:
-    verdicts, window = judged.verdicts, judged.by.trained.window
+def _begins(judged: Judged) -> np.ndarray:
+    # There are no more components than event types.
+    return cut(judged.verdicts, len(judged.by.trained.event_types))
+
+
+def timeline(judged: Judged) -> Timeline:
+    """Return the score of a recording, with at least one window, by stretch."""
+    verdicts, window, begins = judged.verdicts, judged.by.trained.window, _begins(judged)
     threshold = judged.by.threshold
     unit = abs(threshold) if threshold else 1.0
     starts = (np.append(verdicts.start, verdicts.start[-1] + window)
@@ -171,6 +177,7 @@ def _timeline(judged: Judged, begins: np.ndarray) -> Timeline:
         lowest=np.fmin.reduceat(scores, begins),
         highest=np.fmax.reduceat(scores, begins),
         abnormal=np.logical_or.reduceat(verdicts.abnormal, begins),
+        silent=np.logical_or.reduceat(np.isnan(verdicts.score), begins),
         unit=unit,
         limit=None if threshold is None else threshold / unit,
         settling=[(float(starts[a]), float(starts[b])) for a, b in steps.reshape(-1, 2)])
