@@ -13,8 +13,8 @@ import random
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import (Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, Optional, Tuple,
-                    Union)
+from typing import (Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, Optional, Set,
+                    Tuple, Union)
 
 import genpy
 import rosbag
@@ -108,11 +108,15 @@ def start_of(seed: int) -> float:
 def events(duration_s: float, seed: int, fault: Optional[InducedFault] = None,
            scenario: Optional[Scenario] = None, start_s: float = START_S) -> Iterator[Event]:
     """Return what a recorder would see, in the order of arrival; arguments as for `simulate`."""
+    if not 0.0 < duration_s < float('inf'):
+        raise ValueError(f'the duration must be more than 0 s, not {duration_s}')
+    if not _WARM_UP_NS / SECOND_NS <= start_s < 2 ** 32 - duration_s:
+        raise ValueError('the start must be a time in s since 1970, at least '
+                         f'{_WARM_UP_NS // SECOND_NS}, that fits into a bag, not {start_s}')
     scenario = load_scenario() if scenario is None else scenario
-    return (Event(arrival, source, '/' + message.topic, scenario.datatypes[message.topic],
-                  message, sequence)
-            for arrival, source, message, sequence
-            in _record(scenario, duration_s, seed, fault, start_s))
+    start = nanoseconds(start_s)
+    robot = _Robot(scenario, seed, start - _WARM_UP_NS, _Effects(scenario, fault, start))
+    return _attach_recorder(robot.run(start + nanoseconds(duration_s)), scenario, start)
 
 
 def simulate(path: Union[str, Path], duration_s: float, seed: int,
@@ -138,15 +142,17 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int,
         OSError: the file cannot be written.
     """
     scenario = load_scenario() if scenario is None else scenario
-    recording = _record(scenario, duration_s, seed, fault, start_s)
+    recording = events(duration_s, seed, fault, scenario, start_s)
     types = {topic: MessageType(datatype) for topic, datatype in scenario.datatypes.items()}
     told = 0
     with replacing(str(path)) as temporary, rosbag.Bag(temporary, 'w') as bag:
         writer = _Writer(bag, scenario, types)
-        for arrival, source, message, sequence in recording:
-            writer.write(source, message.topic, types[message.topic].to_ros(message, sequence),
-                         genpy.Time(*divmod(arrival, SECOND_NS)))
-            elapsed = (arrival - nanoseconds(start_s)) // SECOND_NS
+        for event in recording:
+            message = event.message
+            writer.write(event.source, message.topic,
+                         types[message.topic].to_ros(message, event.number),
+                         genpy.Time(*divmod(event.stamp_ns, SECOND_NS)))
+            elapsed = (event.stamp_ns - nanoseconds(start_s)) // SECOND_NS
             if elapsed > told:
                 progress(elapsed - told)
                 told = elapsed
@@ -159,8 +165,7 @@ class _Writer:
     def __init__(self, bag: rosbag.Bag, scenario: Scenario, types: Dict[str, MessageType]) -> None:
         self._bag = bag
         self._types = types
-        self._latched = {topic for spec in scenario.components
-                         for topic, output in spec.outputs().items() if output.latch}
+        self._latched = _latched(scenario)
         self._connections: Dict[Tuple[str, str], Any] = {}
 
     def write(self, source: str, topic: str, message: Any, stamp: genpy.Time) -> None:
@@ -187,40 +192,23 @@ class _Writer:
                 'latching': '1' if topic in self._latched else '0'}
 
 
-_Record = Tuple[int, str, Message, int]
-
-
-def _record(scenario: Scenario, duration_s: float, seed: int, fault: Optional[InducedFault],
-            start_s: float) -> Iterator[_Record]:
-    """Check the arguments and return the recording: (arrival, source, message, sequence)."""
-    if not 0.0 < duration_s < float('inf'):
-        raise ValueError(f'the duration must be more than 0 s, not {duration_s}')
-    if not _WARM_UP_NS / SECOND_NS <= start_s < 2 ** 32 - duration_s:
-        raise ValueError('the start must be a time in s since 1970, at least '
-                         f'{_WARM_UP_NS // SECOND_NS}, that fits into a bag, not {start_s}')
-    start = nanoseconds(start_s)
-    robot = _Robot(scenario, seed, start - _WARM_UP_NS, _Effects(scenario, fault, start))
-    return _attach_recorder(robot.run(start + nanoseconds(duration_s)), scenario, start)
-
-
-def _attach_recorder(recording: Iterator[_Record], scenario: Scenario,
-                     start: int) -> Iterator[_Record]:
+def _attach_recorder(recording: Iterator[Event], scenario: Scenario,
+                     start: int) -> Iterator[Event]:
     """Leave out what came before the start, except what latched publishers repeat then."""
-    latched = {topic for spec in scenario.components
-               for topic, output in spec.outputs().items() if output.latch}
-    repeated: Dict[str, _Record] = {}
-    attached = False
-    for record in recording:
-        arrival, source, message, sequence = record
-        if arrival < start:
-            if message.topic in latched:
-                repeated[message.topic] = record
-            continue
-        if not attached:
-            attached = True
-            for _, source, message, sequence in repeated.values():
-                yield start, source, message, sequence
-        yield record
+    repeated: Dict[str, Event] = {}
+    latched = {f'/{topic}' for topic in _latched(scenario)}
+    for event in recording:
+        if event.stamp_ns >= start:
+            yield from (each._replace(stamp_ns=start) for each in repeated.values())
+            repeated.clear()
+            yield event
+        elif event.topic in latched:
+            repeated[event.topic] = event
+
+
+def _latched(scenario: Scenario) -> Set[str]:
+    return {topic for spec in scenario.components
+            for topic, output in spec.outputs().items() if output.latch}
 
 
 class _Effects:
@@ -283,14 +271,14 @@ class _Robot:
         self._subscribers: Dict[str, List[str]] = {topic: [] for topic in scenario.datatypes}
         self._sequences: Dict[Tuple[str, str], int] = defaultdict(int)
         self._arrivals: Dict[Tuple[str, str, str], int] = {}
-        self._queue: List[Tuple[int, int, Union[_Act, _Record]]] = []
+        self._queue: List[Tuple[int, int, Union[_Act, Event]]] = []
         self._pushed = 0
         for spec in scenario.components:
             self._add(spec, seed, begin)
         if effects.intruder is not None:
             self._add(effects.intruder, seed, effects.onset)
 
-    def run(self, end: int) -> Iterator[_Record]:
+    def run(self, end: int) -> Iterator[Event]:
         """Yield what arrives at the recorder before `end` (ns), in order."""
         while self._queue and self._queue[0][0] < end:
             now, _, item = heapq.heappop(self._queue)
@@ -328,7 +316,9 @@ class _Robot:
         if request.lost:
             return
         arrival = self._arrival(name, topic, '', now)
-        self._push(arrival, (arrival, '/' + name, message, self._sequences[name, topic]))
+        self._push(arrival, Event(arrival, f'/{name}', f'/{topic}',
+                                  self._scenario.datatypes[topic], message,
+                                  self._sequences[name, topic]))
         for subscriber in self._subscribers[topic]:
             receive = self._components[subscriber].receive
             self._push(self._arrival(name, topic, subscriber, now),
@@ -342,6 +332,6 @@ class _Robot:
         self._arrivals[connection] = arrival
         return arrival
 
-    def _push(self, at: int, item: Union[_Act, _Record]) -> None:
+    def _push(self, at: int, item: Union[_Act, Event]) -> None:
         self._pushed += 1
         heapq.heappush(self._queue, (at, self._pushed, item))

@@ -15,7 +15,8 @@ import yaml
 from self_awareness.yaml_section import SectionError
 from self_awareness_follow_me.component import Component, Message, Publish, Wake
 from self_awareness_follow_me.component_spec import ComponentSpec, Duration, Output, Task
-from self_awareness_follow_me.effects import Change, DoubleRate, HalfRate, Latency, Novelty
+from self_awareness_follow_me.effects import (Change, Novelty, OtherTasks, Setting, doubled,
+                                              halved)
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import Scenario, load_scenario
 from self_awareness_follow_me.simulation import START_S, Event, InducedFault, events, simulate
@@ -207,7 +208,8 @@ def _published(component: Component, requests: List[Any], now: int) -> List[Any]
 
 
 def test_component_is_right_again_after_the_fault() -> None:
-    component, switch = _changing(Latency(('it',), 0.06), Task((_output('out'),), upon='in'))
+    component, switch = _changing(Setting(('it',), 'delay', 0.06),
+                                  Task((_output('out'),), upon='in'))
     delays = []
     for now, on in enumerate((False, True, True, False)):
         switch['on'] = on
@@ -236,10 +238,10 @@ def test_what_a_fault_adds_ends_with_it_and_does_not_come_twice() -> None:
 
 
 @pytest.mark.parametrize('each, effect, copies', [
-    (1, HalfRate(('it',)), 3), (2, HalfRate(('it',)), 1), (1, DoubleRate(('it',)), 12),
-    (2, DoubleRate(('it',)), 6), (3, DoubleRate(('it',)), 4)])
+    (1, halved, 3), (2, halved, 1), (1, doubled, 12), (2, doubled, 6), (3, doubled, 4)])
 def test_rate_of_what_is_done_upon_a_topic(each: int, effect: Any, copies: int) -> None:
-    component, switch = _changing(effect, Task((_output('out'),), upon='in', each=each))
+    component, switch = _changing(OtherTasks(('it',), effect),
+                                  Task((_output('out'),), upon='in', each=each))
     switch['on'] = True
     said = [p for now in range(6)
             for p in _published(component, component.receive(now, Message('in', now)), now)]
