@@ -1,4 +1,4 @@
-"""The end of scripts/demo.sh: kills the laser's driver, and prints the alarm that operators get."""
+"""The end of scripts/demo.sh: kills the laser's driver, prints the alarm as operators get it."""
 from __future__ import annotations
 
 import argparse

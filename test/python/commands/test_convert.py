@@ -169,6 +169,12 @@ def test_parts_name_the_recording(log: str) -> None:
             expand([BagPart.parse(text)])
 
 
+def test_an_event_log_is_not_converted_again(log: str, tmp_path: Path, capsys) -> None:
+    assert 'is an event log already' in error_of(
+        convert.main, [log, '-o', str(tmp_path / 'again.bag')], capsys)
+    assert os.listdir(tmp_path) == []
+
+
 def test_a_number_is_for_event_logs_only(robot_bags: Bags, tmp_path: Path, capsys) -> None:
     error = error_of(train.main, [f'{robot_bags[0]}#1', '-o', str(tmp_path / 'm')], capsys)
     assert 'no event log' in error and robot_bags[0] in error
@@ -207,26 +213,3 @@ def test_a_log_that_was_not_closed_can_be_mended(robot_bags: Bags, tmp_path: Pat
     found = read_events(path, EncodingRules.defaults(), recording=0)
     assert found.stamps.tolist() == read_events(robot_bags[0],
                                                 EncodingRules.defaults()).stamps.tolist()
-
-
-def test_nothing_is_replaced_but_an_event_log(robot_bags: Bags, tmp_path: Path, capsys) -> None:
-    precious = tmp_path / 'precious.bag'
-    shutil.copy(robot_bags[1], precious)
-    before = precious.read_bytes()
-    error = error_of(convert.main, [robot_bags[0], '-o', str(precious)], capsys)
-    assert 'no event log that could be replaced' in error and precious.read_bytes() == before
-    assert 'is an input, too' in error_of(convert.main, [str(precious), '-o', str(precious)],
-                                          capsys)
-    log = str(tmp_path / 'log.bag')
-    assert convert.main([robot_bags[0], '-o', log]) == 0
-    assert convert.main([robot_bags[1], '-o', log]) == 0
-    assert summarise_bag(log, 0).bag == 'second.bag'
-    assert 'is an event log already' in error_of(
-        convert.main, [log, '-o', str(tmp_path / 'again.bag')], capsys)
-    # A bag that cannot be read leaves nothing behind.
-    broken = tmp_path / 'broken.bag'
-    broken.write_bytes(before[:5000])
-    error = error_of(convert.main, [robot_bags[0], str(broken), '-o', log], capsys)
-    assert str(broken) in error and summarise_bag(log, 0).bag == 'second.bag'
-    assert sorted(each.name for each in tmp_path.iterdir()) == ['broken.bag', 'log.bag',
-                                                                'precious.bag']

@@ -253,4 +253,6 @@ def test_rates_of_what_cannot_be_read_are_refused(model_file: str, robot_bags: A
     assert info.main([robot_bags[0], '--model', robot_bags[0]]) == 1
     assert 'holds no model' in capsys.readouterr().err
     assert info.main([robot_bags[0]]) == 1
-    assert f"info '{robot_bags[0]}' --model MODEL" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert f"info '{robot_bags[0]}' --model MODEL" in error
+    assert f"score '{robot_bags[0]}' --model MODEL" in error and 'train' not in error

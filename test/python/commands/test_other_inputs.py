@@ -76,15 +76,9 @@ def test_a_folder_without_bags_is_named(tmp_path: Path, capsys) -> None:
 
 
 @pytest.mark.parametrize('program, arguments', [
-    ('train', ['{pipe}', '-o', '{out}']),
-    ('calibrate', ['--model', '{pipe}', '--normal', '{bag}', '-o', '{out}']),
     ('calibrate', ['--model', '{model}', '--normal', '{pipe}', '-o', '{out}']),
-    ('score', ['{pipe}', '--model', '{model}']),
     ('score', ['{bag}', '--model', '{pipe}']),
     ('info', ['{pipe}']),
-    ('convert', ['{pipe}', '-o', '{out}']),
-    ('merge', ['{pipe}', '{model}', '-o', '{out}']),
-    ('learn_more', ['--model', '{pipe}', '{bag}', '-o', '{out}']),
     ('diff', ['{model}', '{pipe}'])])
 def test_a_pipe_is_no_bag_and_no_model(program: str, arguments: List[str], robot_bags,
                                        model_file: str, tmp_path: Path) -> None:
@@ -123,10 +117,3 @@ def test_a_model_or_a_result_is_no_recording(robot_bags, model_file: str, tmp_pa
                 ('calibrate', ['--model', model_file, '--normal', path, '-o', output])):
             error = error_of(program, arguments, capsys)
             assert f'{path}: {told}' in error and 'rosbag play' not in error
-
-
-def test_info_of_a_recording_says_what_to_do_with_it(robot_bags, capsys) -> None:
-    error = error_of('info', [robot_bags[0]], capsys)
-    assert f"rosbag info '{robot_bags[0]}'" in error
-    assert f"rosrun self_awareness score '{robot_bags[0]}' --model MODEL" in error
-    assert 'train' not in error

@@ -210,24 +210,6 @@ def test_recordings_that_overlap_are_refused(
                        '--result-bag', path]) == 0
 
 
-def test_a_result_bag_replaces_a_result_bag_only(
-        evidence_model: str, results: Tuple[str, str], dead_laser: str,
-        make_bag: Callable[..., str], tmp_path: Path, capsys) -> None:
-    path, _ = results
-    before = Path(path).read_bytes()
-    assert score.main([f'{dead_laser}@0-20', '--model', evidence_model,
-                       '--result-bag', path]) == 0
-    assert Path(path).read_bytes() != before
-    precious = make_bag('precious.bag', jittery_robot(3000.0, 10.0, 3))
-    Path(path).write_bytes(Path(path).read_bytes()[:-100])  # as if it were being written
-    for file, reason in ((precious, 'no result bag'), (path, 'no result bag'),
-                         (dead_laser, 'is an input, too'), (evidence_model, 'is an input, too')):
-        kept = Path(file).read_bytes()
-        assert score.main([dead_laser, '--model', evidence_model, '--result-bag', file]) == 1
-        assert reason in capsys.readouterr().err
-        assert Path(file).read_bytes() == kept
-
-
 def test_a_recording_that_cannot_be_judged_keeps_no_other_from_it(
         evidence_model: str, dead_laser: str, make_bag: Callable[..., str], tmp_path: Path,
         capsys) -> None:

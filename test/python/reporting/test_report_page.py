@@ -153,27 +153,6 @@ def test_without_plotly_it_says_what_to_install(evidence_model: str, make_bag, t
     assert 'apt install python3-plotly' in captured.err and captured.out == ''
 
 
-def test_a_report_overwrites_no_input(evidence_model: str, tmp_path: Path, capsys) -> None:
-    bag = write_bag(tmp_path / 'bag.html', jittery_robot(7000.0, 30.0, 4))
-    before = Path(bag).read_bytes()
-    assert score.main([bag, '--model', evidence_model, '--report', bag]) == 1
-    assert bag in capsys.readouterr().err and Path(bag).read_bytes() == before
-
-
-def test_a_bag_without_events_is_in_no_report(evidence_model: str, make_bag, tmp_path: Path,
-                                              capsys) -> None:
-    player = '/play_1795206536731453261'
-    good = make_bag('good.bag', jittery_robot(7000.0, 30.0, 4))
-    bag = make_bag('replay.bag', [(t, player, '/a') for t, _, _ in jittery_robot(1.0, 9.0, 1)])
-    report = tmp_path / 'r.html'
-    assert score.main([bag, '--model', evidence_model, '--report', str(report)]) == 1
-    assert sorted(os.listdir(tmp_path)) == ['good.bag', 'replay.bag']
-    assert score.main([good, bag, '--model', evidence_model, '--report', str(report)]) == 1
-    assert bag in capsys.readouterr().err
-    page = report.read_text(encoding='utf-8')
-    assert good in page and bag not in page
-
-
 def test_any_number_of_event_types_is_a_bounded_page(
         evidence_model: str, tmp_path: Path, make_bag: Callable[..., str]) -> None:
     messages = sorted([*without_laser(3000.0),
