@@ -128,11 +128,7 @@ class Model:
         recording = recordings.read(self.trained, parts[0])
         judge = evidence_judge(self.trained, parameters or DetectorParameters(), self._computed)
         return Alarms(recording, judge(recording.stamps, recording.ids, recording.end,
-                                       recording.event_types, None, recording.clock_steps,
-                                       waiting=recording.waiting, hosts=recording.hosts,
-                                       missing=recording.missing,
-                                       attributes=recording.attributes,
-                                       senders=recording.senders))
+                                       recording.event_types, **recording.known))
 
     def coverage(self) -> List[Coverage]:
         """Return how soon the death of each component is found, and whether late answers are.

@@ -4,8 +4,8 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import (Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set,
-                    Tuple)
+from typing import (Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence,
+                    Set, Tuple)
 
 import numpy as np
 
@@ -125,6 +125,12 @@ class RecordingEvents:
             return ''
         path, start = begun[-1]
         return f'{(stamp - start) / SECOND_NS:.1f} s of {os.path.basename(path)}'
+
+    @property
+    def known(self) -> Dict[str, Any]:
+        """What a judge is told besides the events, by the names of its arguments."""
+        return {'clock_steps': self.clock_steps, 'waiting': self.waiting, 'hosts': self.hosts,
+                'missing': self.missing, 'attributes': self.attributes, 'senders': self.senders}
 
     @cached_property
     def heard(self) -> np.ndarray:

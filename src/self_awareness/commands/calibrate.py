@@ -22,7 +22,7 @@ from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDE
                                              normal_run, recorded_fault)
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
-from self_awareness.judging import evidence_judge, paper_judge
+from self_awareness.judging import evidence_judge, load_model, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, replacing
 from self_awareness.parts import BagPart, Named, by_folder, look
 from self_awareness.recordings import RecordingEvents
@@ -78,7 +78,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                          '(--faulty) or let some be made (--inject)')
     parameters = cli.detector_parameters(arguments)
     _check_options(arguments)
-    trained = cli.load_model(arguments.model, arguments.detector)
+    trained = load_model(arguments.model, arguments.detector)
     accepted = _accepted(arguments, trained)
     faults = [of_known_source(fault, trained.event_types) for fault in arguments.inject]
 

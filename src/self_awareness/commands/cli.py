@@ -242,21 +242,6 @@ def add_robots_by_folder(parser: argparse.ArgumentParser) -> None:
                              'robot has the name of its folder')
 
 
-def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedModel:
-    """Return the model of a file, which a detector is to judge by.
-
-    Raises:
-        ModelFileError: it cannot be read.
-        ValueError: it was not trained for this detector.
-    """
-    model = TrainedModel.load(path, watched_only)
-    try:
-        model.require(detector)
-    except ValueError as error:
-        raise ValueError(f'{path}: {error}') from error
-    return model
-
-
 def add_skip_bad(parser: argparse.ArgumentParser) -> None:
     """Add the option that leaves out recordings that cannot be used."""
     parser.add_argument('--skip-bad', action='store_true',

@@ -9,6 +9,7 @@ from self_awareness.calibration.heads_and_tails import START_UP_S
 from self_awareness.commands import cli
 from self_awareness.comparison.changes import compare
 from self_awareness.comparison.sides import with_recordings
+from self_awareness.judging import load_model
 from self_awareness.learning import age, more, programs
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.reporting import age_text, diff_text
@@ -41,7 +42,7 @@ def _learn_more(arguments: argparse.Namespace) -> None:
     cli.say_found(named, arguments.skip_bad)
     check_outputs([(new, MODEL)], [arguments.model, *(file for part in named.parts
                                                       for file in part.files)])
-    trained = cli.load_model(arguments.model, 'evidence')
+    trained = load_model(arguments.model, 'evidence')
     found = age.age_of(arguments.model, trained, named, arguments.skip_bad)
     cli.print_lines(age_text.lines(found))
     division = more.divided(trained, found, arguments.start_up)

@@ -10,12 +10,12 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence
 
-from self_awareness import (EVIDENCE_THRESHOLD, Alarm, BagError, EvidenceModel, PaperModel,
-                            Suspect, TrainedModel)
+from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, PaperModel, Suspect,
+                            TrainedModel)
 from self_awareness import accepted_file, alarms
 from self_awareness.calibration.heads_and_tails import stopped_before_end
 from self_awareness.commands import cli
-from self_awareness.judging import evidence_judge, paper_judge
+from self_awareness.judging import evidence_judge, load_model, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
                                          replacing)
 from self_awareness.parts import BagPart, look
@@ -79,7 +79,7 @@ def _score(arguments: argparse.Namespace) -> int:
     check_apart(arguments.result_bag, named.parts)
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
-    trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)
+    trained = load_model(arguments.model, arguments.detector, watched_only=not paper)
     evidence = None if paper else EvidenceModel(trained)
     if evidence is None:
         judge = paper_judge(trained, PaperModel(trained), trained.threshold, parameters)
@@ -104,17 +104,9 @@ def _score(arguments: argparse.Namespace) -> int:
     judged: List[Judged] = []
     with result_bag(arguments.result_bag, arguments.model, trained,
                     threshold is not None, coverage) as replay:
-        for part in named.parts:
-            try:
-                recording = cli.read_recording('score', trained, part)
-            except (BagError, ValueError) as error:
-                named.bad.append(str(error))
-                continue
+        for recording in named.each(lambda part: cli.read_recording('score', trained, part)):
             verdicts = judge(recording.stamps, recording.ids, recording.end,
-                             recording.event_types, replay(recording),
-                             recording.clock_steps, waiting=recording.waiting,
-                             hosts=recording.hosts, missing=recording.missing,
-                             attributes=recording.attributes, senders=recording.senders)
+                             recording.event_types, replay(recording), **recording.known)
             judged.append(Judged(by, recording, verdicts))
             _print(judged[-1])
         if not judged:
