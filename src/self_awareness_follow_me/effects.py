@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Any, Callable, Tuple
+from typing import Any, Callable, Optional, Tuple
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_follow_me.component_spec import ComponentSpec, Task
@@ -169,6 +169,44 @@ class Faults:
     order: OtherTasks
     unknown: Novelty
     lossy: Setting
+
+
+class Induced:
+    """A fault that a robot has, by time (ns).
+
+    Args:
+        effect: what it does; None: there is no fault.
+        onset: when it begins.
+    """
+
+    def __init__(self, effect: Optional[Effect] = None, onset: int = 0) -> None:
+        self.effect = effect
+        self.onset = onset
+
+    def has_killed(self, name: str, now: int) -> bool:
+        """Return whether the component of that name is dead."""
+        kills = isinstance(self.effect, Silence) or (isinstance(self.effect, Crash)
+                                                     and name == self.effect.component)
+        return kills and now >= self.onset
+
+    def slowdown(self, now: int) -> float:
+        """Return by how much everything that needs a CPU is stretched, >= 1."""
+        effect = self.effect
+        return effect.factor(now - self.onset) if isinstance(effect, Starvation) else 1.0
+
+    def clock(self, host: str) -> Callable[[int], int]:
+        """Return what the clock of a host shows at a given time."""
+        effect = self.effect
+        if not isinstance(effect, ClockDrift) or effect.host != host:
+            return lambda now: now
+        offset_ns = effect.offset_ns
+        return lambda now: now + offset_ns(now - self.onset)
+
+    def spec_at(self, spec: ComponentSpec) -> Callable[[int], ComponentSpec]:
+        """Return what a component does at a given time."""
+        effect = self.effect
+        changed = effect.changed(spec) if isinstance(effect, Change) else spec
+        return lambda now: changed if now >= self.onset else spec
 
 
 def halved(task: Task) -> Task:

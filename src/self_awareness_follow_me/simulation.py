@@ -13,8 +13,7 @@ import random
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import (Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, Optional, Set,
-                    Tuple, Union)
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Set, Tuple, Union
 
 import genpy
 import rosbag
@@ -23,8 +22,7 @@ from self_awareness.output_files import replacing
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_follow_me.component import Component, Message, Publish, Request, Wake
 from self_awareness_follow_me.component_spec import ComponentSpec, Value
-from self_awareness_follow_me.effects import (Change, ClockDrift, Crash, Intruder, Silence,
-                                              Starvation)
+from self_awareness_follow_me.effects import Induced, Intruder
 from self_awareness_follow_me.faults import check_form, effect_of
 from self_awareness_follow_me.messages import MessageType
 from self_awareness_follow_me.scenario import Scenario, load_scenario
@@ -115,7 +113,9 @@ def events(duration_s: float, seed: int, fault: Optional[InducedFault] = None,
                          f'{_WARM_UP_NS // SECOND_NS}, that fits into a bag, not {start_s}')
     scenario = load_scenario() if scenario is None else scenario
     start = nanoseconds(start_s)
-    robot = _Robot(scenario, seed, start - _WARM_UP_NS, _Effects(scenario, fault, start))
+    induced = (Induced() if fault is None else
+               Induced(effect_of(scenario, fault.kind), start + nanoseconds(fault.onset_s)))
+    robot = _Robot(scenario, seed, start - _WARM_UP_NS, induced)
     return _attach_recorder(robot.run(start + nanoseconds(duration_s)), scenario, start)
 
 
@@ -211,46 +211,6 @@ def _latched(scenario: Scenario) -> Set[str]:
             for topic, output in spec.outputs().items() if output.latch}
 
 
-class _Effects:
-    """What a fault does to the components, by time (ns)."""
-
-    def __init__(self, scenario: Scenario, fault: Optional[InducedFault], start: int) -> None:
-        effect = None if fault is None else effect_of(scenario, fault.kind)
-        self.onset = start + nanoseconds(0.0 if fault is None else fault.onset_s)
-        self.intruder = effect.spec if isinstance(effect, Intruder) else None
-        self._dead: FrozenSet[str] = frozenset()
-        if isinstance(effect, Crash):
-            self._dead = frozenset([effect.component])
-        elif isinstance(effect, Silence):
-            self._dead = frozenset(spec.name for spec in scenario.components)
-        self._starvation = effect if isinstance(effect, Starvation) else None
-        self._drift = effect if isinstance(effect, ClockDrift) else None
-        self._change = effect if isinstance(effect, Change) else None
-
-    def crashed(self, name: str, now: int) -> bool:
-        """Return whether the component of that name is dead."""
-        return name in self._dead and now >= self.onset
-
-    def slowdown(self, now: int) -> float:
-        """Return by how much everything that needs a CPU is stretched, >= 1."""
-        return 1.0 if self._starvation is None else self._starvation.factor(now - self.onset)
-
-    def clock(self, host: str) -> Callable[[int], int]:
-        """Return what the clock of a host shows at a given time."""
-        drift = self._drift
-        if drift is None or drift.host != host:
-            return lambda now: now
-        offset_ns = drift.offset_ns
-        return lambda now: now + offset_ns(now - self.onset)
-
-    def spec_at(self, spec: ComponentSpec) -> Optional[Callable[[int], ComponentSpec]]:
-        """Return what a component does at a given time; None if that never changes."""
-        changed = spec if self._change is None else self._change.changed(spec)
-        if changed is spec:
-            return None
-        return lambda now: changed if now >= self.onset else spec
-
-
 @dataclass(frozen=True)
 class _Act:
     """Something that a component will do at some time."""
@@ -262,9 +222,9 @@ class _Act:
 class _Robot:
     """All components, the messages between them, and the queue of what happens next."""
 
-    def __init__(self, scenario: Scenario, seed: int, begin: int, effects: _Effects) -> None:
+    def __init__(self, scenario: Scenario, seed: int, begin: int, fault: Induced) -> None:
         self._scenario = scenario
-        self._effects = effects
+        self._fault = fault
         # One random stream each: what one component draws does not change the others.
         self._rng = random.Random(f'{seed}/transport')
         self._components: Dict[str, Component] = {}
@@ -275,8 +235,8 @@ class _Robot:
         self._pushed = 0
         for spec in scenario.components:
             self._add(spec, seed, begin)
-        if effects.intruder is not None:
-            self._add(effects.intruder, seed, effects.onset)
+        if isinstance(fault.effect, Intruder):
+            self._add(fault.effect.spec, seed, fault.onset)
 
     def run(self, end: int) -> Iterator[Event]:
         """Yield what arrives at the recorder before `end` (ns), in order."""
@@ -284,13 +244,13 @@ class _Robot:
             now, _, item = heapq.heappop(self._queue)
             if not isinstance(item, _Act):
                 yield item
-            elif not self._effects.crashed(item.name, now):
+            elif not self._fault.has_killed(item.name, now):
                 for request in item.call(now):
                     self._schedule(item.name, request, now)
 
     def _add(self, spec: ComponentSpec, seed: int, begin: int) -> None:
         component = Component(spec, random.Random(f'{seed}/{spec.name}'),
-                              self._effects.clock(spec.host), self._effects.spec_at(spec))
+                              self._fault.clock(spec.host), self._fault.spec_at(spec))
         self._components[spec.name] = component
         for topic in spec.inputs():
             self._subscribers[topic].append(spec.name)
@@ -298,7 +258,7 @@ class _Robot:
 
     def _schedule(self, name: str, request: Request, now: int) -> None:
         component = self._components[name]
-        slowdown = self._effects.slowdown(now)
+        slowdown = self._fault.slowdown(now)
         if isinstance(request, Publish):
             self._transmit(name, request, now + request.delay)
         elif isinstance(request, Wake):
