@@ -25,14 +25,10 @@ _Value = TypeVar('_Value')
 Work = Callable[[argparse.Namespace], Optional[int]]
 """What a program does with its arguments; it may return an exit code."""
 
-PLOT_ENDINGS = ('.png', '.pdf', '.svg')
-"""Of files of pictures: the ending says the format."""
-
 _INTERRUPTED = 130
 _LONGEST_S = 86400.0
 _UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
             'error': UnknownEvents.ERROR}
-_MOST = 10_000
 _MOST_WINDOWS = 100_000
 
 
@@ -157,10 +153,7 @@ def warn(program: str, text: str) -> None:
 
 def seconds(text: str, low: float = 0.0) -> int:
     """Argument type: a time in seconds, from `low` to a day, as nanoseconds."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
+    value = _number(text)
     if not low <= value <= _LONGEST_S:  # false for NaN as well
         raise argparse.ArgumentTypeError(f'expected seconds from {low:g} to {_LONGEST_S:g}, '
                                          f'not {text!r}')
@@ -186,24 +179,29 @@ def offset(text: str) -> float:
     return float(text)
 
 
-def count(text: str) -> int:
+def count(text: str, most: int = 10_000) -> int:
     """Argument type: how many of something, 1 or more."""
-    if not text.isdecimal() or not 1 <= int(text) <= _MOST:
-        raise argparse.ArgumentTypeError(f'expected a number from 1 to {_MOST}, not {text!r}')
+    if not text.isdecimal() or not 1 <= int(text) <= most:
+        raise argparse.ArgumentTypeError(f'expected a number from 1 to {most}, not {text!r}')
     return int(text)
 
 
 def above_zero(what: str) -> Callable[[str], float]:
     """Return an argument type: a number above 0 of something."""
     def convert(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
+        value = _number(text)
         if not 0.0 < value < math.inf:
             raise argparse.ArgumentTypeError(f'expected {what}, more than 0, not {text!r}')
         return value
     return convert
+
+
+def _number(text: str) -> float:
+    """Return a number; NaN: it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 budget = above_zero('false alarms an hour')
@@ -220,12 +218,20 @@ def checked(parse: Callable[[str], _Value]) -> Callable[[str], _Value]:
     return convert
 
 
-def plot_file(text: str) -> str:
-    """Argument type: the name of a picture."""
-    if not text.lower().endswith(PLOT_ENDINGS):
-        raise argparse.ArgumentTypeError(
-            f'expected a name that ends in {", ".join(PLOT_ENDINGS)}, not {text!r}')
-    return text
+def ends_in(*endings: str) -> Callable[[str], str]:
+    """Return an argument type: the name of a file whose ending says what it is."""
+    def check(text: str) -> str:
+        if not text.lower().endswith(endings):
+            raise argparse.ArgumentTypeError(
+                f'expected a name that ends in {", ".join(endings)}, not {text!r}')
+        return text
+    return check
+
+
+plot_file = ends_in('.png', '.pdf', '.svg')
+"""Argument type: the name of a picture."""
+page_file = ends_in('.html')
+"""Argument type: the name of a page; no browser would open another one."""
 
 
 def add_detector_argument(parser: argparse.ArgumentParser) -> None:
@@ -374,9 +380,7 @@ def detector_parameters(arguments: argparse.Namespace) -> DetectorParameters:
 
 
 def _windows(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= _MOST_WINDOWS:
-        raise argparse.ArgumentTypeError(f'expected a number of windows, not {text!r}')
-    return int(text)
+    return count(text, _MOST_WINDOWS)
 
 
 def _fail(program: str, text: str) -> int:

@@ -11,7 +11,7 @@ from self_awareness.output_files import PAGE, check_outputs
 from self_awareness.parts import BagPart
 from self_awareness.reporting import diff_text
 from self_awareness.reporting.report.diff_page import save_diff
-from self_awareness.reporting.report.page import check_installed, check_name
+from self_awareness.reporting.report.page import check_installed
 
 _EPILOG = """\
 Give two models, or a model and recordings: a bag, a part of it (BAG@START-END), or a folder of
@@ -50,7 +50,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('before', metavar='A', help='how it was')
     parser.add_argument('after', metavar='B', help='how it is')
     parser.add_argument('--json', action='store_true', help='print JSON, for programs')
-    parser.add_argument('--html', type=cli.checked(check_name), metavar='FILE.html',
+    parser.add_argument('--html', type=cli.page_file, metavar='FILE.html',
                         help='write a page for a browser, too')
     cli.add_skip_bad(parser)
     return parser

@@ -26,7 +26,7 @@ from self_awareness.reporting.report import neighbours
 from self_awareness.reporting.report.incidents import as_values, incidents, place_of
 from self_awareness.reporting.report.intervals import intervals
 from self_awareness.reporting.report.judged import Judged, JudgedBy
-from self_awareness.reporting.report.page import check_installed, check_name, save_report
+from self_awareness.reporting.report.page import check_installed, save_report
 from self_awareness.reporting.report.section import section
 from self_awareness.reporting.report.timeline import timeline
 from self_awareness.reporting.text import cell, of_limit
@@ -257,7 +257,7 @@ def _parser() -> argparse.ArgumentParser:
                         help='write alarms, suspicions and incidents, for programs')
     parser.add_argument('--plot', type=cli.plot_file, metavar='FILE',
                         help='draw the scores over time; the name ends in .png, .pdf or .svg')
-    parser.add_argument('--report', type=cli.checked(check_name), metavar='FILE.html',
+    parser.add_argument('--report', type=cli.page_file, metavar='FILE.html',
                         help='write a page for a browser: who failed, when and why')
     parser.add_argument('--open', action='store_true',
                         help='open the report in a browser')

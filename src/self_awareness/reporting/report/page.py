@@ -17,19 +17,7 @@ from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.section import Section
 
 _FOLDER = os.path.dirname(__file__)
-_ENDING = '.html'
 _WITHOUT_EVAL = 5  # the first version of plotly whose plotly.js calls no eval()
-
-
-def check_name(path: str) -> str:
-    """Return the name of a page.
-
-    Raises:
-        ValueError: it does not end in .html: no browser would open it.
-    """
-    if not path.lower().endswith(_ENDING):
-        raise ValueError(f'expected a name that ends in {_ENDING}, not {path!r}')
-    return path
 
 
 def check_installed() -> None:
