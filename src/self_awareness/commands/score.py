@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import math
 import webbrowser
@@ -17,7 +16,7 @@ from self_awareness.calibration.heads_and_tails import stopped_before_end
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, load_model, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
-                                         replacing)
+                                         replacing, save_table)
 from self_awareness.parts import BagPart, look
 from self_awareness.recordings import RecordingEvents, in_words, unknown
 from self_awareness.reporting import coverage_text
@@ -112,7 +111,7 @@ def _score(arguments: argparse.Namespace) -> int:
         if not judged:
             named.check()
     if arguments.csv is not None:
-        _save_csv(arguments.csv, judged, threshold)
+        save_table(arguments.csv, _COLUMNS, _rows(judged, threshold))
     if arguments.json is not None:
         _save_json(arguments.json, judged, missing, named.bad)
     if arguments.plot is not None:
@@ -217,23 +216,18 @@ def _save_json(path: str, judged: Sequence[Judged], missing: str, bad: Sequence[
         file.write('\n')
 
 
-def _save_csv(path: str, judged: Sequence[Judged], threshold: Optional[float]) -> None:
+def _rows(judged: Sequence[Judged], threshold: Optional[float]) -> Iterator[Sequence[object]]:
     limit = '' if threshold is None else repr(threshold)
-    with replacing(path) as temporary:
-        with open(temporary, 'w', encoding='utf-8', newline='') as file:
-            writer = csv.writer(file, lineterminator='\n')
-            writer.writerow(_COLUMNS)
-            for each in judged:
-                verdicts = each.verdicts
-                part = cell(str(each.recording.part))
-                columns = (verdicts.start, verdicts.events, verdicts.unknown, verdicts.score,
-                           verdicts.abnormal)
-                for begin in range(0, len(verdicts.start), _ROWS):  # lists take much memory
-                    for start, events, strange, score, abnormal in zip(
-                            *(column[begin:begin + _ROWS].tolist() for column in columns)):
-                        writer.writerow((part, start, events, strange,
-                                         '' if math.isnan(score) else repr(score), limit,
-                                         int(abnormal)))
+    for each in judged:
+        verdicts = each.verdicts
+        part = cell(str(each.recording.part))
+        columns = (verdicts.start, verdicts.events, verdicts.unknown, verdicts.score,
+                   verdicts.abnormal)
+        for begin in range(0, len(verdicts.start), _ROWS):  # lists take much memory
+            for start, events, strange, score, abnormal in zip(
+                    *(column[begin:begin + _ROWS].tolist() for column in columns)):
+                yield (part, start, events, strange, '' if math.isnan(score) else repr(score),
+                       limit, int(abnormal))
 
 
 def _plot(judged: Judged) -> ScorePlot:

@@ -11,10 +11,9 @@ from urllib.parse import quote
 
 from self_awareness.output_files import replacing
 from self_awareness.reporting.report import figures, neighbours
-from self_awareness.reporting.report.details import Details
 from self_awareness.reporting.report.headline import clock
 from self_awareness.reporting.report.incidents import Incident
-from self_awareness.reporting.report.section import Section
+from self_awareness.reporting.report.section import Details, Section
 
 _FOLDER = os.path.dirname(__file__)
 _WITHOUT_EVAL = 5  # the first version of plotly whose plotly.js calls no eval()
