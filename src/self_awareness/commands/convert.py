@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from typing import Optional, Sequence, Tuple
+from typing import Optional, Sequence
 
 from self_awareness import (BagSummary, EncodingRules, EventLogWriter, encoding_file, progress,
                             summarise_bag)
@@ -30,13 +30,16 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _convert(arguments: argparse.Namespace) -> None:
     named = cli.look_at(map(BagPart, arguments.bags), arguments.skip_bad)
+    for part in named.parts:
+        if part.recording is not None:
+            raise ValueError(f'{part.path}: is an event log already')
     bags = [file for part in named.parts for file in part.files]
     check_outputs([(arguments.output, EVENT_LOG)], [*bags, arguments.encoding])
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
     with replacing(arguments.output) as temporary:
         log = EventLogWriter(temporary, arguments.output)
         added = 0
-        for part, summary in named.each(_summary):
+        for part, summary in named.each(lambda part: (part, summarise_bag(part.files))):
             _add(log, part, summary, encoding)
             added += 1
         named.check(arguments.skip_bad and added > 0)
@@ -45,12 +48,6 @@ def _convert(arguments: argparse.Namespace) -> None:
     size = os.path.getsize(arguments.output)
     cli.say_skipped('convert', named.bad)
     print(f'written: {arguments.output}, {size / 1e6:.1f} MB of {of_bags / 1e6:.1f} MB')
-
-
-def _summary(part: BagPart) -> Tuple[BagPart, BagSummary]:
-    if part.recording is not None:
-        raise ValueError(f'{part.path}: is an event log already')
-    return part, summarise_bag(part.files)
 
 
 def _add(log: EventLogWriter, part: BagPart, summary: BagSummary,

@@ -5,11 +5,11 @@ import json
 import os
 import shutil
 from pathlib import Path
-from typing import Callable, List, Tuple
+from typing import Callable, Tuple
 
 import pytest
 import rosbag
-from conftest import learned, robot
+from conftest import error_of, learned, robot
 
 from self_awareness import (EncodingRules, EventLogWriter, TrainedModel, read_events,
                             recordings_in_event_log, summarise_bag)
@@ -18,13 +18,6 @@ from self_awareness.parts import BagPart, expand
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 Bags = Tuple[str, str]
-
-
-def error_of(main: Callable[[List[str]], int], arguments: List[str],
-             capsys: pytest.CaptureFixture) -> str:
-    capsys.readouterr()
-    assert main(arguments) == 1
-    return capsys.readouterr().err
 
 
 @pytest.fixture(scope='module')
@@ -120,8 +113,8 @@ def test_the_encoding_of_the_log_is_that_of_the_model(long_bags: Bags, tmp_path:
     assert trained.encoding.exclude_topics == ['/charge'] and len(trained.event_types) == 2
     other = str(tmp_path / 'other.model')
     assert train.main([long_bags[0], '-o', other]) == 0
-    assert 'another encoding' in error_of(score.main, [log, '--model', other], capsys)
-    assert 'another encoding' in error_of(train.main, [log, '--add-to', other, '-o', other],
+    assert 'another encoding' in error_of(score, [log, '--model', other], capsys)
+    assert 'another encoding' in error_of(train, [log, '--add-to', other, '-o', other],
                                           capsys)
 
 
@@ -157,7 +150,7 @@ def test_info_says_what_is_in_a_log(log: str, capsys) -> None:
     found = json.loads(capsys.readouterr().out)
     assert [recording['robot_start_ns'] for recording in found['recordings']] == [None, None]
     assert found['recordings'][0]['encoding']['source'] == 'callerid'
-    assert 'is an event log' in error_of(info.main, [log, '--pair', '/laser', '/slam'], capsys)
+    assert 'is an event log' in error_of(info, [log, '--pair', '/laser', '/slam'], capsys)
 
 
 def test_parts_name_the_recording(log: str) -> None:
@@ -171,20 +164,20 @@ def test_parts_name_the_recording(log: str) -> None:
 
 def test_an_event_log_is_not_converted_again(log: str, tmp_path: Path, capsys) -> None:
     assert 'is an event log already' in error_of(
-        convert.main, [log, '-o', str(tmp_path / 'again.bag')], capsys)
+        convert, [log, '-o', str(tmp_path / 'again.bag')], capsys)
     assert os.listdir(tmp_path) == []
 
 
 def test_a_number_is_for_event_logs_only(robot_bags: Bags, tmp_path: Path, capsys) -> None:
-    error = error_of(train.main, [f'{robot_bags[0]}#1', '-o', str(tmp_path / 'm')], capsys)
+    error = error_of(train, [f'{robot_bags[0]}#1', '-o', str(tmp_path / 'm')], capsys)
     assert 'no event log' in error and robot_bags[0] in error
 
 
 def test_the_same_recording_as_bag_and_log_is_refused(long_bags: Bags, log: str, tmp_path: Path,
                                                       capsys) -> None:
-    error = error_of(train.main, [long_bags[1], log, '-o', str(tmp_path / 'm')], capsys)
+    error = error_of(train, [long_bags[1], log, '-o', str(tmp_path / 'm')], capsys)
     assert 'the same recording' in error
-    error = error_of(train.main, [log, f'{log}#2@3', '-o', str(tmp_path / 'm')], capsys)
+    error = error_of(train, [log, f'{log}#2@3', '-o', str(tmp_path / 'm')], capsys)
     assert f'{log}#2@3: the same recording as {log}#2' in error
 
 
@@ -193,11 +186,11 @@ def test_a_damaged_log_is_named(log: str, tmp_path: Path, capsys) -> None:
     cut = tmp_path / 'cut.bag'
     model = str(tmp_path / 'm')
     cut.write_bytes(whole[:len(whole) // 2])
-    assert f'rosbag reindex {str(cut)!r}' in error_of(train.main, [str(cut), '-o', model], capsys)
+    assert f'rosbag reindex {str(cut)!r}' in error_of(train, [str(cut), '-o', model], capsys)
     with rosbag.Bag(log) as source, rosbag.Bag(str(cut), 'w') as copy:
         for topic, message, stamp in source.read_messages(topics=['/event_log/events']):
             copy.write(topic, message, stamp)
-    assert f'{cut}: the event log has no start' in error_of(train.main, [str(cut), '-o', model],
+    assert f'{cut}: the event log has no start' in error_of(train, [str(cut), '-o', model],
                                                             capsys)
     assert not os.path.exists(model)
 
