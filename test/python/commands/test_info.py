@@ -14,7 +14,7 @@ import pytest
 from conftest import robot, train_tuned
 
 from self_awareness import EvidenceModel, TrainedModel, Tuning
-from self_awareness.commands import calibrate, convert, info, train
+from self_awareness.commands import calibrate, info, train
 from self_awareness.reporting.delay_bins import drawn, paper_bins
 
 LASER, SLAM = '/laser /scan std_msgs/String', '/slam /map std_msgs/String'
@@ -113,15 +113,6 @@ def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path, caps
     assert [line.split()[0] for line in lines] == [each.name for each in Tuning.numbers()]
     assert [line.split()[:2] for line in lines if '(default: ' in line] == [
         ['predecessors', '1'], ['least_effect', '0.0025']]
-
-
-def test_an_event_log_has_no_tuning(robot_bags, tmp_path, capsys) -> None:
-    log = str(tmp_path / 'log')
-    assert convert.main([robot_bags[0], '-o', log]) == 0
-    capsys.readouterr()
-    assert info.main([log, '--tuning']) == 1
-    assert capsys.readouterr().err == (
-        f'info: error: --tuning: is for models, and {log} is an event log\n')
 
 
 def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None:

@@ -102,17 +102,6 @@ def test_programs_need_not_parse_words(evidence_model: str, results: Tuple[str, 
     assert first['usual'] < first['value'] and first['after'] is None
 
 
-def test_where_all_are_silent_nobody_is_to_blame(evidence_model: str, tmp_path: Path,
-                                                 make_bag: Callable[..., str]) -> None:
-    bag, values = make_bag('silent.bag', [
-        m for m in jittery_robot(3000.0, 30.0, 3) if not 3012.0 <= m[0] < 3020.0]), tmp_path / 'j'
-    assert score.main([bag, '--model', evidence_model, '--json', str(values)]) == 0
-    found, = [alarm for alarm in json.loads(values.read_text())['recordings'][0]['alarms']
-              if alarm['level'] == 'ERROR']
-    assert (found['kind'], found['culprit']) == ('all silent', None)
-    assert len({suspect['component'] for suspect in found['suspects'] + found['later']}) > 1
-
-
 def test_an_alarm_keeps_its_id_until_it_is_over(results: Tuple[str, str]) -> None:
     path, _ = results
     said = [(message.level, message.alarm) for message, _ in read(path, STATUS)]

@@ -82,11 +82,6 @@ class Overview:
     lanes: Optional[Lanes]
     evidence: Optional[EvidenceLanes]
 
-    def stretch(self, time: float) -> int:
-        """Return the index of the stretch that holds a time [s]."""
-        index = int(np.searchsorted(self.timeline.edges, time, side='right')) - 1
-        return min(max(index, 0), len(self.timeline.lowest) - 1)
-
 
 def overview(judged: Judged, first: Sequence[str]) -> Overview:
     """Return what is drawn of a recording over time.
@@ -137,11 +132,10 @@ def strongest_track(found: Overview, judged: Judged, time: float) -> Optional[Tu
     """Return the track that has the largest share of its limit at a time [s], and the share."""
     if found.evidence is None or judged.by.evidence is None:
         return None
-    stretch = found.stretch(time)
-    index = found.evidence.tracks[stretch]
-    if index is None:
-        return None
-    return (judged.by.evidence.tracks[index], float(found.evidence.strongest[stretch]))
+    at = int(np.searchsorted(found.timeline.edges[1:-1], time, side='right'))
+    index = found.evidence.tracks[at]
+    return index if index is None else (judged.by.evidence.tracks[index],
+                                        float(found.evidence.strongest[at]))
 
 
 def select_lanes(found: EvidenceLanes, first: Sequence[str]) -> Lanes:
