@@ -150,9 +150,7 @@ def _print_log(summary: Dict[str, Any]) -> None:
           + (f', starts of the robot: {summary["starts"]}' if summary['starts'] else ''))
     for number, recording in enumerate(summary['recordings'], 1):
         start = recording['robot_start_ns']
-        print(f'    #{number} {recording["bag"]}: {recording["duration"]:.1f} s, '
-              f'{recording["events"]} events, from {moment(recording["start_ns"])}'
-              + ('' if recording['robot'] is None else f', of {recording["robot"]}')
+        print(f'    #{number} {_recording(recording)}'
               + ('' if start is None else f', robot started {moment(start)}')
               + (f', {recording["dropped"]} messages were dropped' if recording['dropped']
                  else ''))
@@ -289,10 +287,13 @@ def _print_calibration(calibration: Optional[Dict[str, Any]]) -> None:
 
 
 def _print_recordings(recordings: Sequence[Dict[str, Any]]) -> None:
-    for recording in recordings:
-        print(f'    {recording["bag"]}: {recording["duration"]:.1f} s, '
-              f'{recording["events"]} events, from {moment(recording["start_ns"])}'
-              + ('' if recording['robot'] is None else f', of {recording["robot"]}'))
+    cli.print_lines(f'    {_recording(recording)}' for recording in recordings)
+
+
+def _recording(recording: Dict[str, Any]) -> str:
+    return (f'{recording["bag"]}: {recording["duration"]:.1f} s, {recording["events"]} events, '
+            f'from {moment(recording["start_ns"])}'
+            + ('' if recording['robot'] is None else f', of {recording["robot"]}'))
 
 
 def _or_none(value: Optional[float]) -> str:
