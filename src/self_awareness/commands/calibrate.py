@@ -322,9 +322,7 @@ def _rows(runs: Sequence[JudgedRun]) -> Iterator[Sequence[object]]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='calibrate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('calibrate', __doc__, _EPILOG)
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     parser.add_argument('--normal', type=BagPart.parse, nargs='+', action='extend',
                         required=True, default=[], metavar='BAG',

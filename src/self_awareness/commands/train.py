@@ -192,9 +192,7 @@ def _cores() -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='train', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('train', __doc__, _EPILOG)
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
                         help='a recording of normal operation, or a folder of them; delays never '
                              'cross from one to the next')
