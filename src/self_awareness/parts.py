@@ -135,7 +135,7 @@ class Named:
             raise BadRecordingsError(self.bad)
 
     def each(self, read: Callable[[BagPart], _Read]) -> Iterator[_Read]:
-        """Yield what is read of each part; those that turn out to be bad are added to these."""
+        """Yield what is read of each part; what cannot be read is added to the bad ones."""
         for part in self.parts:
             try:
                 found = read(part)

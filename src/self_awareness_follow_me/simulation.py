@@ -146,12 +146,9 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int,
     types = {topic: MessageType(datatype) for topic, datatype in scenario.datatypes.items()}
     told = 0
     with replacing(str(path)) as temporary, rosbag.Bag(temporary, 'w') as bag:
-        writer = _Writer(bag, scenario, types)
+        writer = _Writer(bag, scenario)
         for event in recording:
-            message = event.message
-            writer.write(event.source, message.topic,
-                         types[message.topic].to_ros(message, event.number),
-                         genpy.Time(*divmod(event.stamp_ns, SECOND_NS)))
+            writer.write(event, types[event.message.topic].to_ros(event.message, event.number))
             elapsed = (event.stamp_ns - nanoseconds(start_s)) // SECOND_NS
             if elapsed > told:
                 progress(elapsed - told)
@@ -162,41 +159,34 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int,
 class _Writer:
     """Writes to a bag with a connection for each publisher, as `rosbag record` does."""
 
-    def __init__(self, bag: rosbag.Bag, scenario: Scenario, types: Dict[str, MessageType]) -> None:
+    def __init__(self, bag: rosbag.Bag, scenario: Scenario) -> None:
         self._bag = bag
-        self._types = types
         self._latched = _latched(scenario)
         self._connections: Dict[Tuple[str, str], Any] = {}
 
-    def write(self, source: str, topic: str, message: Any, stamp: genpy.Time) -> None:
-        """Write a message that the node `source` published on a topic of the scenario."""
-        name = '/' + topic
+    def write(self, event: Event, message: Any) -> None:
+        """Write what a node published."""
+        source, topic = event.source, event.topic
         # rosbag itself has one connection for each topic, however many nodes publish there.
         connections = self._bag._topic_connections
-        known = self._connections.get((source, name))
-        if known is not None:
-            connections[name] = known
-            self._bag.write(name, message, stamp)
-            return
-        connections.pop(name, None)
-        self._bag.write(name, message, stamp, connection_header=self._header(source, topic))
-        self._connections[source, name] = connections[name]
-
-    def _header(self, source: str, topic: str) -> Dict[str, str]:
-        message_class = self._types[topic].message_class
-        return {'topic': '/' + topic,
-                'type': message_class._type,
-                'md5sum': message_class._md5sum,
-                'message_definition': message_class._full_text,
-                'callerid': source,
-                'latching': '1' if topic in self._latched else '0'}
+        header = None
+        if (source, topic) in self._connections:
+            connections[topic] = self._connections[source, topic]
+        else:
+            connections.pop(topic, None)
+            header = {'topic': topic, 'type': message._type, 'md5sum': message._md5sum,
+                      'message_definition': message._full_text, 'callerid': source,
+                      'latching': '1' if topic in self._latched else '0'}
+        self._bag.write(topic, message, genpy.Time(*divmod(event.stamp_ns, SECOND_NS)),
+                        connection_header=header)
+        self._connections[source, topic] = connections[topic]
 
 
 def _attach_recorder(recording: Iterator[Event], scenario: Scenario,
                      start: int) -> Iterator[Event]:
     """Leave out what came before the start, except what latched publishers repeat then."""
     repeated: Dict[str, Event] = {}
-    latched = {f'/{topic}' for topic in _latched(scenario)}
+    latched = _latched(scenario)
     for event in recording:
         if event.stamp_ns >= start:
             yield from (each._replace(stamp_ns=start) for each in repeated.values())
@@ -207,7 +197,7 @@ def _attach_recorder(recording: Iterator[Event], scenario: Scenario,
 
 
 def _latched(scenario: Scenario) -> Set[str]:
-    return {topic for spec in scenario.components
+    return {f'/{topic}' for spec in scenario.components
             for topic, output in spec.outputs().items() if output.latch}
 
 
