@@ -10,9 +10,10 @@ from typing import (Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Op
 import numpy as np
 
 from self_awareness import (LATEST_EVENT, LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules,
-                            EventType, ModelFileError, RecordedEvents, Recording, ResultBag,
+                            EventType, ModelFileError, RecordedEvents, Recording,
                             TrainedModel, Waiting, find_clock_steps, missing_subscriptions,
                             progress, read_events, summarise_bag)
+from self_awareness.output_files import MODEL, RESULT_BAG
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training.robot_graph import RobotGraph
@@ -290,13 +291,10 @@ def check_kind(path: str) -> None:
     Raises:
         ValueError: it is what the programs write.
     """
-    if ResultBag.is_one(path):
+    if RESULT_BAG.is_one(path):
         raise ValueError('is a result bag (score --result-bag), and no recording')
-    try:
-        TrainedModel.load(path, watched_only=True)
-    except ModelFileError:
-        return
-    raise ValueError('is a model, and no recording')
+    if MODEL.is_one(path):
+        raise ValueError('is a model, and no recording')
 
 
 def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -> None:
