@@ -1,12 +1,11 @@
 """Judges whole recordings with either detector: both are called in the same way."""
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, Optional, Sequence, Set, Tuple
+from functools import partial
+from typing import Callable, Optional, Sequence
 
-import numpy as np
-
-from self_awareness import (Acceptance, DetectorParameters, EventType, EvidenceModel, PaperModel,
-                            ReplayedMonitor, TrainedModel, Verdicts, Waiting, judge_by_evidence)
+from self_awareness import (Acceptance, DetectorParameters, EvidenceModel, PaperModel,
+                            TrainedModel, Verdicts, judge_by_evidence)
 
 EVIDENCE = 'evidence'
 PAPER = 'paper'
@@ -14,11 +13,8 @@ BOTH = 'both'
 """The detectors that a model may be trained for."""
 
 Judge = Callable[..., Verdicts]
-"""Judges stamps and ids of a recording, and the silence up to its end [ns]. Further arguments: the
-event types by id, those of the model first (without, those of unknown events are not known), a
-ReplayedMonitor that is told of all of it, where the clock was set (clock_steps), how the machine
-was (waiting), on which computers sources ran (hosts), which subscriptions were missing, the
-attributes of the messages (attributes), and who sent besides (senders)."""
+"""Takes the arguments of judge_by_evidence() from `stamps` on: those of the recording. Without the
+event types (those of the model first), those of unknown events are not known."""
 
 
 def paper_judge(trained: TrainedModel, model: PaperModel, threshold: Optional[float],
@@ -43,17 +39,20 @@ def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,
     Raises:
         ValueError: the limits are not those of the model.
     """
-    model = computed or EvidenceModel(trained)
+    return partial(judge_by_evidence, trained, computed or EvidenceModel(trained), parameters,
+                   accepted=list(accepted))
 
-    def judge(stamps: np.ndarray, ids: np.ndarray, end: Optional[int] = None,
-              event_types: Iterable[EventType] = (), monitor: Optional[ReplayedMonitor] = None,
-              clock_steps: Sequence[int] = (), waiting: Iterable[Waiting] = (),
-              hosts: Optional[Dict[str, str]] = None,
-              missing: Iterable[Tuple[int, Set[Tuple[str, str]]]] = (),
-              attributes: Optional[np.ndarray] = None,
-              senders: Iterable[Tuple[int, Set[Tuple[str, str]], Set[EventType]]] = ()
-              ) -> Verdicts:
-        return judge_by_evidence(trained, model, parameters, stamps, ids, end, list(event_types),
-                                 monitor, clock_steps, list(waiting), hosts or {}, list(accepted),
-                                 list(missing), attributes, list(senders))
-    return judge
+
+def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedModel:
+    """Return the model of a file, which a detector is to judge by.
+
+    Raises:
+        ModelFileError: it cannot be read.
+        ValueError: it was not trained for this detector.
+    """
+    model = TrainedModel.load(path, watched_only)
+    try:
+        model.require(detector)
+    except ValueError as error:
+        raise ValueError(f'{path}: {error}') from error
+    return model

@@ -4,7 +4,7 @@ from __future__ import annotations
 import json
 import os
 from contextlib import closing
-from typing import Any, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
+from typing import Any, Dict, Iterable, List, Optional, Tuple, Union
 
 from self_awareness import (Alarm, Coverage, DetectorParameters, EncodingRules, EvidenceModel,
                             TrainedModel, Verdicts, alarms, recordings)
@@ -21,7 +21,7 @@ Bag = Union[str, 'os.PathLike[str]']
 """The name of a bag or an event log, or `BAG@START-END`: a part, in s from its first message."""
 
 
-class Alarms(Sequence[Alarm]):
+class Alarms(List[Alarm]):
     """Alarms and suspicions of a recording, in the order of their begin.
 
     >>> alarms = load('robot.model').judge('crash.bag')
@@ -36,24 +36,9 @@ class Alarms(Sequence[Alarm]):
     """
 
     def __init__(self, recording: RecordingEvents, verdicts: Verdicts) -> None:
+        super().__init__(alarms.in_order(verdicts))
         self.recording = recording
         self.verdicts = verdicts
-        self._alarms = alarms.in_order(verdicts)
-
-    @overload
-    def __getitem__(self, index: int) -> Alarm: ...
-
-    @overload
-    def __getitem__(self, index: slice) -> List[Alarm]: ...
-
-    def __getitem__(self, index: Union[int, slice]) -> Union[Alarm, List[Alarm]]:
-        return self._alarms[index]
-
-    def __iter__(self) -> Iterator[Alarm]:
-        return iter(self._alarms)
-
-    def __len__(self) -> int:
-        return len(self._alarms)
 
     def table(self) -> List[Dict[str, Any]]:
         """Return a dictionary for each, of strings and numbers; what is not known is None.
@@ -63,7 +48,7 @@ class Alarms(Sequence[Alarm]):
         ('ERROR', 'died', '/laser', True)
         """
         return [alarms.as_values(alarm, self.recording.event_types, self.recording.origin)
-                for alarm in self._alarms]
+                for alarm in self]
 
     def to_json(self) -> str:
         """Return the table as JSON, as `score --json` writes it."""
@@ -128,11 +113,7 @@ class Model:
         recording = recordings.read(self.trained, parts[0])
         judge = evidence_judge(self.trained, parameters or DetectorParameters(), self._computed)
         return Alarms(recording, judge(recording.stamps, recording.ids, recording.end,
-                                       recording.event_types, None, recording.clock_steps,
-                                       waiting=recording.waiting, hosts=recording.hosts,
-                                       missing=recording.missing,
-                                       attributes=recording.attributes,
-                                       senders=recording.senders))
+                                       recording.event_types, **recording.known))
 
     def coverage(self) -> List[Coverage]:
         """Return how soon the death of each component is found, and whether late answers are.

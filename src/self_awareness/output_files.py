@@ -1,12 +1,14 @@
 """Files that programs write: whole or not at all, and never over a file of another kind."""
 from __future__ import annotations
 
+import csv
+import itertools
 import os
 import re
 import stat
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
-from typing import Callable, Dict, Hashable, Iterator, Optional, Sequence, Tuple
+from typing import Callable, Dict, Hashable, Iterable, Iterator, Optional, Sequence, Tuple
 
 from self_awareness import (FileError, ModelFileError, OutputFile, ResultBag, TrainedModel,
                             recordings_in_event_log, write_problem)
@@ -76,6 +78,16 @@ def replacing(path: str) -> Iterator[str]:
                 raise
             raise FileError(write_problem(path, error.errno, file.temporary)) from error
         file.complete()
+
+
+def save_table(path: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Write a table, as CSV.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    with replacing(path) as temporary, open(temporary, 'w', encoding='utf-8', newline='') as file:
+        csv.writer(file, lineterminator='\n').writerows(itertools.chain([columns], rows))
 
 
 def check_outputs(outputs: Sequence[Output], inputs: Sequence[Optional[str]]) -> None:

@@ -5,12 +5,14 @@ import math
 import os
 import re
 from dataclasses import dataclass, field, replace
-from typing import Dict, Iterable, List, Optional, Set, Tuple
+from typing import Callable, Dict, Iterable, Iterator, List, Optional, Set, Tuple, TypeVar
 
 from self_awareness import (BagError, bag_span, name_of_files, printable, recordings_in_event_log,
                             split_bags, summarise_bag)
 from self_awareness.split_bags import Span
 from self_awareness.stamps import nanoseconds
+
+_Read = TypeVar('_Read')
 
 _PART = re.compile(r'(?P<path>.+?)((?<=\.bag)\.\.(?P<last>\d+))?(#(?P<number>\d+))?'
                    r'(@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?)?')
@@ -131,6 +133,16 @@ class Named:
         """
         if self.bad and not (skip_bad and self.parts):
             raise BadRecordingsError(self.bad)
+
+    def each(self, read: Callable[[BagPart], _Read]) -> Iterator[_Read]:
+        """Yield what is read of each part; what cannot be read is added to the bad ones."""
+        for part in self.parts:
+            try:
+                found = read(part)
+            except (BagError, ValueError) as error:
+                self.bad.append(str(error))
+            else:
+                yield found
 
 
 def expand(parts: Iterable[BagPart]) -> List[BagPart]:

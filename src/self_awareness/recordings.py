@@ -4,14 +4,16 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
+from typing import (Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence,
+                    Set, Tuple)
 
 import numpy as np
 
 from self_awareness import (LATEST_EVENT, LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules,
-                            EventType, ModelFileError, RecordedEvents, Recording, ResultBag,
+                            EventType, ModelFileError, RecordedEvents, Recording,
                             TrainedModel, Waiting, find_clock_steps, missing_subscriptions,
                             progress, read_events, summarise_bag)
+from self_awareness.output_files import MODEL, RESULT_BAG
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training.robot_graph import RobotGraph
@@ -124,6 +126,12 @@ class RecordingEvents:
             return ''
         path, start = begun[-1]
         return f'{(stamp - start) / SECOND_NS:.1f} s of {os.path.basename(path)}'
+
+    @property
+    def known(self) -> Dict[str, Any]:
+        """What a judge is told besides the events, by the names of its arguments."""
+        return {'clock_steps': self.clock_steps, 'waiting': self.waiting, 'hosts': self.hosts,
+                'missing': self.missing, 'attributes': self.attributes, 'senders': self.senders}
 
     @cached_property
     def heard(self) -> np.ndarray:
@@ -283,13 +291,10 @@ def check_kind(path: str) -> None:
     Raises:
         ValueError: it is what the programs write.
     """
-    if ResultBag.is_one(path):
+    if RESULT_BAG.is_one(path):
         raise ValueError('is a result bag (score --result-bag), and no recording')
-    try:
-        TrainedModel.load(path, watched_only=True)
-    except ModelFileError:
-        return
-    raise ValueError('is a model, and no recording')
+    if MODEL.is_one(path):
+        raise ValueError('is a model, and no recording')
 
 
 def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -> None:
@@ -313,26 +318,34 @@ def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -
                          'recording: it was trained with another encoding or on another robot')
 
 
-def unknown_types(model: TrainedModel, recording: RecordingEvents) -> List[int]:
-    """Return the ids of event types that training knows in no way: nobody published them.
+class Unknown(NamedTuple):
+    """Event types that a model does not know: the number of their events and the name of each.
 
-    A mode that it never saw is none of them.
+    Args:
+        new: training knows them in no way: nobody published them.
+        modes: of the robot, that training never saw.
+        unheard: they were published in training, and nobody subscribed to them.
     """
-    unheard = model.unheard
-    return [index for index in recording.heard.tolist() if index >= len(model.event_types)
-            and not recording.event_types[index].tells_mode
-            and (recording.event_types[index].source,
-                 recording.event_types[index].scope) not in unheard]
+
+    new: List[Tuple[int, str]]
+    modes: List[Tuple[int, str]]
+    unheard: List[Tuple[int, str]]
 
 
-def unknown_modes(model: TrainedModel, recording: RecordingEvents) -> List[int]:
-    """Return the ids of modes of the robot that training never saw."""
-    return [index for index in recording.heard.tolist() if index >= len(model.event_types)
-            and recording.event_types[index].tells_mode]
+def unknown(model: TrainedModel, recording: RecordingEvents) -> Unknown:
+    """Return what a model does not know of a recording, what came most often first."""
+    found = Unknown([], [], [])
+    counts, unheard = np.bincount(recording.ids), model.unheard
+    for index in recording.heard[recording.heard >= len(model.event_types)].tolist():
+        kind = recording.event_types[index]
+        (found.modes if kind.tells_mode else found.unheard if (kind.source, kind.scope) in unheard
+         else found.new).append((int(counts[index]), str(kind)))
+    for each in found:
+        each.sort(key=lambda counted: (-counted[0], counted[1]))
+    return found
 
 
 def _known(model: TrainedModel, recording: RecordingEvents) -> Tuple[int, int]:
     """Return how many of the event types of a recording a model knows, and how many there are."""
-    unknown = set(unknown_types(model, recording))
     known = int((recording.heard < len(model.event_types)).sum())
-    return known, known + len(unknown)
+    return known, known + len(unknown(model, recording).new)

@@ -13,11 +13,13 @@ import traceback
 import warnings
 from abc import ABC, abstractmethod
 from collections import deque
-from contextlib import closing, contextmanager, suppress
-from typing import Any, Callable, Deque, Dict, Generator, Iterator, Optional, Sequence, TypeVar
+from contextlib import contextmanager, suppress
+from multiprocessing import connection
+from typing import (Any, Callable, Deque, Dict, Generator, Iterator, Optional, Sequence, Tuple,
+                    TypeVar)
 
 from self_awareness import progress
-from self_awareness.process_pool import ProcessPool
+from self_awareness.forked import Forked, ctrl_c_waits
 
 _Shared = TypeVar('_Shared')
 _Task = TypeVar('_Task')
@@ -28,6 +30,8 @@ _AHEAD = 2
 _LARGEST_BATCH = 8
 """The most tasks of a batch, unless there are more workers than this."""
 _RETRIES = 2
+_ATTEMPTS = 1 + _RETRIES
+_LOOK_AGAIN_S = 0.2
 _CONNECT_S = 10.0
 
 
@@ -94,23 +98,41 @@ class Processes(Workers):
             tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
         """See Workers. What is shared and the tasks are inherited by fork, and not copied.
 
-        If a process is killed, another one does its work.
+        Each task has a process of its own. If that is killed, another one does its work.
         """
         number = min(self._number, len(tasks))
-        pool = ProcessPool(number, lambda index: _outcome(function, shared, tasks[index]))
-        begun = 0
+        running: Dict[Any, Tuple[Forked, int, int]] = {}  # by pipe; task and attempt
         outcomes: Dict[int, Optional[bytes]] = {}  # that wait for their turn
-        with closing(pool), progress.items(len(tasks), description) as one_done:
-            for turn, task in enumerate(tasks):
-                while True:
-                    while pool.has_room and begun < min(len(tasks), turn + _AHEAD * number):
-                        pool.begin(begun)
-                        begun += 1
-                    if turn in outcomes:
-                        break
-                    outcomes.update(pool.wait())
-                yield _result(outcomes.pop(turn), task)
-                one_done()
+        begun = 0
+
+        def begin(index: int, attempt: int) -> None:
+            with ctrl_c_waits():
+                process = Forked(lambda: _outcome(function, shared, tasks[index]))
+                running[process.pipe] = process, index, attempt
+
+        try:
+            with progress.items(len(tasks), description) as one_done:
+                for turn, task in enumerate(tasks):
+                    while True:
+                        while (len(running) < number
+                               and begun < min(len(tasks), turn + _AHEAD * number)):
+                            begin(begun, 1)
+                            begun += 1
+                        if turn in outcomes:
+                            break
+                        # A signal that comes just before the wait does not end it: look again.
+                        for pipe in connection.wait(list(running), _LOOK_AGAIN_S):
+                            process, index, attempt = running.pop(pipe)
+                            outcome = process.answer()
+                            if outcome is None and attempt < _ATTEMPTS:
+                                begin(index, attempt + 1)
+                            else:
+                                outcomes[index] = outcome
+                    yield _result(outcomes.pop(turn), task)
+                    one_done()
+        finally:
+            for process, _, _ in running.values():
+                process.kill()
 
     def batches(self, tasks: int) -> int:
         """See Workers."""

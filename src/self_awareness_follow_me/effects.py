@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Tuple
+from typing import Any, Callable, Optional, Tuple
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_follow_me.component_spec import ComponentSpec, Task
@@ -110,69 +110,33 @@ class Change(Effect):
 
 
 @dataclass(frozen=True)
-class Latency(Change):
-    """All messages come `delay` seconds later, at an unchanged rate."""
+class Setting(Change):
+    """A property of ComponentSpec that only faults have is set: its messages come late, and so on.
 
-    delay: float
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, delay=self.delay)
-
-
-class HalfRate(Change):
-    """Timers run at half their rate; of what triggers a task, every second one is ignored."""
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, tasks=tuple(_halved(task) for task in spec.tasks))
-
-
-class DoubleRate(Change):
-    """Timers run at twice their rate; what messages start is done twice as often.
-
-    A task that starts on every Nth message starts on every N/2th one. If N is odd, each of its
-    messages is published twice in a row instead.
+    Args:
+        name: of the property.
+        value: of it.
     """
 
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, tasks=tuple(_doubled(task) for task in spec.tasks))
-
-
-class Disorder(Change):
-    """The messages of one piece of work come in reversed order, at the same times otherwise."""
+    name: str
+    value: Any = True
 
     def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, tasks=tuple(_reversed(task) for task in spec.tasks))
-
-
-class Staleness(Change):
-    """The stamps stop; the messages come as always."""
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, stale=True)
-
-
-class Freeze(Change):
-    """Every message says what the one before said; the stamps go on."""
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, frozen=True)
-
-
-class Emptiness(Change):
-    """The lists in the messages have no elements: a scan without ranges, an image without data."""
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, empty=True)
+        return replace(spec, **{self.name: self.value})
 
 
 @dataclass(frozen=True)
-class Loss(Change):
-    """A share of the messages gets lost on the way out, after it was counted."""
+class OtherTasks(Change):
+    """Each task is done in another way.
 
-    share: float
+    Args:
+        other: halved, doubled or disordered.
+    """
+
+    other: Callable[[Task], Task]
 
     def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, lost=self.share)
+        return replace(spec, tasks=tuple(self.other(task) for task in spec.tasks))
 
 
 class Deafness(Change):
@@ -200,20 +164,64 @@ class Faults:
     cc2: Crash
     rs: Starvation
     ac: ClockDrift
-    lat: Latency
+    lat: Setting
     extra: Intruder
-    order: Disorder
+    order: OtherTasks
     unknown: Novelty
-    lossy: Loss
+    lossy: Setting
 
 
-def _halved(task: Task) -> Task:
+class Induced:
+    """A fault that a robot has, by time (ns).
+
+    Args:
+        effect: what it does; None: there is no fault.
+        onset: when it begins.
+    """
+
+    def __init__(self, effect: Optional[Effect] = None, onset: int = 0) -> None:
+        self.effect = effect
+        self.onset = onset
+
+    def has_killed(self, name: str, now: int) -> bool:
+        """Return whether the component of that name is dead."""
+        kills = isinstance(self.effect, Silence) or (isinstance(self.effect, Crash)
+                                                     and name == self.effect.component)
+        return kills and now >= self.onset
+
+    def slowdown(self, now: int) -> float:
+        """Return by how much everything that needs a CPU is stretched, >= 1."""
+        effect = self.effect
+        return effect.factor(now - self.onset) if isinstance(effect, Starvation) else 1.0
+
+    def clock(self, host: str) -> Callable[[int], int]:
+        """Return what the clock of a host shows at a given time."""
+        effect = self.effect
+        if not isinstance(effect, ClockDrift) or effect.host != host:
+            return lambda now: now
+        offset_ns = effect.offset_ns
+        return lambda now: now + offset_ns(now - self.onset)
+
+    def spec_at(self, spec: ComponentSpec) -> Callable[[int], ComponentSpec]:
+        """Return what a component does at a given time."""
+        effect = self.effect
+        changed = effect.changed(spec) if isinstance(effect, Change) else spec
+        return lambda now: changed if now >= self.onset else spec
+
+
+def halved(task: Task) -> Task:
+    """Return a task whose timer runs at half its rate, or that ignores every second message."""
     if task.upon is None:
         return replace(task, every=task.period().times(2.0))
     return replace(task, each=2 * task.each)
 
 
-def _doubled(task: Task) -> Task:
+def doubled(task: Task) -> Task:
+    """Return a task that is done twice as often.
+
+    One that starts on every Nth message starts on every N/2th one. If N is odd, each of its
+    messages is published twice in a row instead.
+    """
     if task.upon is None:
         return replace(task, every=task.period().times(0.5))
     if task.each % 2 == 0:
@@ -222,7 +230,8 @@ def _doubled(task: Task) -> Task:
                    otherwise=tuple(replace(output, copies=2) for output in task.otherwise))
 
 
-def _reversed(task: Task) -> Task:
+def disordered(task: Task) -> Task:
+    """Return a task whose messages come in reversed order, at the same times otherwise."""
     return replace(task, publish=tuple(
         replace(output, takes=slot.takes, waits=slot.waits)
         for slot, output in zip(task.publish, reversed(task.publish))))

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 from typing import Callable, Dict, Optional, Tuple
 
 from self_awareness_follow_me.component_spec import ComponentSpec
-from self_awareness_follow_me.effects import (Crash, Deafness, DoubleRate, Effect, Emptiness,
-                                              Freeze, HalfRate, Silence, Staleness)
+from self_awareness_follow_me.effects import (Crash, Deafness, Effect, OtherTasks, Setting,
+                                              Silence, doubled, halved)
 from self_awareness_follow_me.messages import MessageType
 from self_awareness_follow_me.scenario import Scenario
 
@@ -83,7 +83,7 @@ class _Kind:
         return ':COMPONENT' if self.alone is _needs_component else '[:COMPONENT]'
 
 
-def _double_rate(_: Scenario, spec: ComponentSpec) -> DoubleRate:
+def _double_rate(_: Scenario, spec: ComponentSpec) -> Effect:
     for task in spec.tasks:
         if task.upon is not None:
             continue
@@ -92,23 +92,23 @@ def _double_rate(_: Scenario, spec: ComponentSpec) -> DoubleRate:
         if busy > period / 2.0:
             raise ValueError(f'{spec.name!r} is busy for {busy:g} s every {period:g} s '
                              'and cannot do that twice as often; choose another component')
-    return DoubleRate((spec.name,))
+    return OtherTasks((spec.name,), doubled)
 
 
-def _staleness(_: Scenario, spec: ComponentSpec) -> Staleness:
+def _staleness(_: Scenario, spec: ComponentSpec) -> Effect:
     if not any(MessageType(output.datatype).has_stamp for output in spec.outputs().values()):
         raise ValueError(f'no message of {spec.name!r} has a stamp; choose another component')
-    return Staleness((spec.name,))
+    return Setting((spec.name,), 'stale')
 
 
-def _emptiness(_: Scenario, spec: ComponentSpec) -> Emptiness:
+def _emptiness(_: Scenario, spec: ComponentSpec) -> Effect:
     if not any(MessageType(output.datatype).has_list for output in spec.outputs().values()):
         raise ValueError(f'no message of {spec.name!r} has a list that can be empty; choose '
                          'another component')
-    return Emptiness((spec.name,))
+    return Setting((spec.name,), 'empty')
 
 
-def _deafness(_: Scenario, spec: ComponentSpec) -> Deafness:
+def _deafness(_: Scenario, spec: ComponentSpec) -> Effect:
     if not spec.hears:
         raise ValueError(f'{spec.name!r} hears nothing that it could miss and go on; choose '
                          'another component')
@@ -124,7 +124,8 @@ _KINDS: Dict[str, _Kind] = {
     'silence': _Kind('all components die at once', lambda _: Silence()),
     'lat': _Kind('components answer later, at an unchanged rate', lambda robot: robot.faults.lat,
                  lambda robot, spec: replace(robot.faults.lat, components=(spec.name,))),
-    'half': _Kind('a component works at half its rate', of=lambda _, spec: HalfRate((spec.name,))),
+    'half': _Kind('a component works at half its rate',
+                  of=lambda _, spec: OtherTasks((spec.name,), halved)),
     'double': _Kind('a component publishes twice as often', of=_double_rate),
     'extra': _Kind("a foreign node publishes on a component's topic",
                    lambda robot: robot.faults.extra),
@@ -136,7 +137,7 @@ _KINDS: Dict[str, _Kind] = {
                    of=lambda robot, spec: replace(robot.faults.lossy, components=(spec.name,))),
     'empty': _Kind('scans, images and lists of a component are empty', of=_emptiness),
     'freeze': _Kind('a component says the same for ever, with new stamps',
-                    of=lambda _, spec: Freeze((spec.name,))),
+                    of=lambda _, spec: Setting((spec.name,), 'frozen')),
     'unsubscribed': _Kind('a component does not subscribe to one of its topics', of=_deafness),
 }
 

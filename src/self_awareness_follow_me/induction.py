@@ -6,25 +6,22 @@ import math
 import multiprocessing
 import os
 import signal
-import socket
 import subprocess
 import time
 from ctypes import c_double
-from http.client import HTTPException
 from pathlib import Path
-from typing import Any, ContextManager, Dict, Iterator, Optional
-from urllib.parse import urlparse
-from xmlrpc.client import Fault as XmlRpcFault
-from xmlrpc.client import ServerProxy
+from typing import ContextManager, Dict, Iterator, Optional
 
 import rosgraph
-import rosgraph.network
 
+from self_awareness.recovery.node_calls import NodeCalls
+from self_awareness.recovery.xml_rpc import NoAnswer
 from self_awareness_follow_me.effects import Crash, Effect, Intruder, Starvation
 from self_awareness_follow_me.faults import INDUCED_FAULT
 from self_awareness_follow_me.scenario import Scenario
 
 _CALLER_ID = '/induce'
+_WITHIN_S = 5.0
 
 
 class InduceError(ValueError):
@@ -95,24 +92,18 @@ def process_id(node: str) -> int:
     Raises:
         InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
     """
+    calls = NodeCalls(_CALLER_ID, _WITHIN_S)
     try:
-        uri = rosgraph.Master(_CALLER_ID).lookupNode(node)
-    except rosgraph.MasterError as error:
-        raise InduceError(f'{node} is not known to the master: is the robot running, and is '
-                          '--namespace right?') from error
-    except (OSError, rosgraph.MasterException) as error:
-        raise _no_master() from error
-    if not rosgraph.network.is_local_address(urlparse(uri).hostname):
-        raise InduceError(f'{node} runs on another machine ({uri}): induce the fault there')
+        address = calls.address(node)
+        if not calls.is_here(address):
+            raise InduceError(f'{node} runs on another machine ({address}): induce the fault '
+                              'there')
+    except NoAnswer as error:
+        raise _no_robot(error) from error
     try:
-        with _timeout(5.0):
-            answer: Any = ServerProxy(uri).getPid(_CALLER_ID)
-            code, text, pid = answer
-    except (OSError, HTTPException, XmlRpcFault) as error:
-        raise _DeadError(f'{node} does not answer at {uri}: it is dead already') from error
-    if code != 1 or pid <= 1:
-        raise InduceError(f'{node} does not tell its process id: {text}')
-    return pid
+        return calls.process_id(node, address)
+    except NoAnswer as error:
+        raise _DeadError(f'{error}: it is dead already') from error
 
 
 @contextlib.contextmanager
@@ -127,13 +118,12 @@ def disturbed(kind: str, namespace: str = '') -> Iterator[None]:
         InduceError: no robot is running there.
     """
     parameter = _resolved(namespace, INDUCED_FAULT)
-    master = rosgraph.Master(_CALLER_ID)
-    _check_running(master, parameter)
+    _check_running(parameter)
     try:
-        _set_parameter(master, parameter, f'{kind}@{time.time():.6f}')
+        _set_parameter(parameter, f'{kind}@{time.time():.6f}')
         yield
     finally:
-        _set_parameter(master, parameter, '')
+        _set_parameter(parameter, '')
 
 
 @contextlib.contextmanager
@@ -144,7 +134,7 @@ def intruding(effect: Intruder, namespace: str = '', scenario: Optional[Path] = 
     Raises:
         InduceError: no robot is running there, or the node ended by itself.
     """
-    _check_running(rosgraph.Master(_CALLER_ID), _resolved(namespace, INDUCED_FAULT))
+    _check_running(_resolved(namespace, INDUCED_FAULT))
     command = ['rosrun', 'self_awareness', 'component', effect.spec.name]
     command += [] if scenario is None else ['--scenario', str(scenario)]
     try:
@@ -201,38 +191,27 @@ def _work(begin: c_double, delay_s: float, parent: int) -> None:
                 pass
 
 
-def _check_running(master: rosgraph.Master, parameter: str) -> None:
+def _check_running(parameter: str) -> None:
     """Check that a robot has set its parameter."""
     try:
-        known = master.hasParam(parameter)
-    except (OSError, rosgraph.MasterException) as error:
-        raise _no_master() from error
+        known = NodeCalls(_CALLER_ID).parameter(parameter) is not None
+    except NoAnswer as error:
+        raise _no_robot(error) from error
     if not known:
-        raise InduceError(f'parameter {parameter} is not set: is the robot running, and is '
-                          '--namespace right?')
+        raise _no_robot(f'parameter {parameter} is not set')
 
 
-def _set_parameter(master: rosgraph.Master, parameter: str, value: str) -> None:
+def _set_parameter(parameter: str, value: str) -> None:
     try:
-        master.setParam(parameter, value)
-    except (OSError, rosgraph.MasterException) as error:
-        raise _no_master() from error
+        NodeCalls(_CALLER_ID).master('setParam', parameter, value)
+    except NoAnswer as error:
+        raise _no_robot(error) from error
 
 
 def _resolved(namespace: str, *names: str) -> str:
     return '/'.join(['', *filter(None, namespace.split('/')), *names])
 
 
-def _no_master() -> InduceError:
-    return InduceError(f'no master at {rosgraph.get_master_uri()}: is the robot running, and is '
-                       'ROS_MASTER_URI right?')
-
-
-@contextlib.contextmanager
-def _timeout(seconds: float) -> Iterator[None]:
-    before = socket.getdefaulttimeout()
-    socket.setdefaulttimeout(seconds)
-    try:
-        yield
-    finally:
-        socket.setdefaulttimeout(before)
+def _no_robot(why: object) -> InduceError:
+    return InduceError(f'{why}: is the robot running, and are --namespace and ROS_MASTER_URI '
+                       f'({rosgraph.get_master_uri()}) right?')

@@ -14,14 +14,14 @@ import queue
 import random
 import time
 from functools import partial
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import rospy
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_follow_me.component import Component, Message, Publish, Request, Wake, Work
 from self_awareness_follow_me.component_spec import ComponentSpec
-from self_awareness_follow_me.effects import Change, ClockDrift
+from self_awareness_follow_me.effects import Induced
 from self_awareness_follow_me.faults import INDUCED_FAULT, effect_of
 from self_awareness_follow_me.messages import MessageType
 from self_awareness_follow_me.scenario import Scenario
@@ -145,23 +145,14 @@ class ComponentNode:
         return self._epoch + time.monotonic_ns()
 
 
-class _Disturbance(NamedTuple):
-    """What an induced fault means to one component, and the parameter that says so."""
-
-    parameter: str
-    spec: ComponentSpec
-    drift: Optional[ClockDrift] = None
-    onset: int = 0
-
-
 class _FaultWatch:
     """The fault that the parameter INDUCED_FAULT tells of, as far as it concerns one component."""
 
     def __init__(self, scenario: Scenario, spec: ComponentSpec) -> None:
         self._scenario = scenario
         self._spec = spec
-        # Several threads ask: always replaced as a whole.
-        self._disturbance = _Disturbance('', spec)
+        self._parameter = ''
+        self._take(Induced())
         self._look_at = 0
         # A parameter that is not set cannot be cached: every look at it would ask the master.
         if not rospy.has_param(INDUCED_FAULT):
@@ -169,37 +160,31 @@ class _FaultWatch:
 
     def clock(self, now: int) -> int:
         """Return what the clock of the component's host shows (ns) at a given time (ns)."""
-        disturbance = self._newest(now)
-        if disturbance.drift is None:
-            return now
-        return now + disturbance.drift.offset_ns(now - disturbance.onset)
+        self._look(now)
+        return self._clock(now)
 
     def spec_at(self, now: int) -> ComponentSpec:
         """Return what the component does at a given time (ns)."""
-        return self._newest(now).spec
+        self._look(now)
+        return self._spec_at(now)
 
-    def _newest(self, now: int) -> _Disturbance:
+    def _look(self, now: int) -> None:
         if now >= self._look_at:
             self._look_at = now + _LOOK_EVERY_NS
             parameter = rospy.get_param_cached(INDUCED_FAULT, '')
-            if parameter != self._disturbance.parameter:
-                self._disturbance = self._read(parameter)
-        return self._disturbance
+            if parameter != self._parameter:
+                self._parameter = parameter
+                self._take(self._read(parameter))
 
-    def _read(self, parameter: str) -> _Disturbance:
-        normal = _Disturbance(parameter, self._spec)
-        if not parameter:
-            return normal
+    def _take(self, fault: Induced) -> None:
+        self._clock, self._spec_at = fault.clock(self._spec.host), fault.spec_at(self._spec)
+
+    def _read(self, parameter: str) -> Induced:
+        kind, _, onset = parameter.partition('@')
         try:
-            kind, _, onset = parameter.partition('@')
-            effect = effect_of(self._scenario, kind)
-            disturbance = normal._replace(onset=nanoseconds(float(onset)))
+            return (Induced(effect_of(self._scenario, kind), nanoseconds(float(onset)))
+                    if parameter else Induced())
         except ValueError as error:
             rospy.logerr(f'parameter {rospy.resolve_name(INDUCED_FAULT)}: {parameter!r} is not '
                          f'KIND@ONSET: {error}; ignored')
-            return normal
-        if isinstance(effect, Change):
-            return disturbance._replace(spec=effect.changed(self._spec))
-        if isinstance(effect, ClockDrift) and effect.host == self._spec.host:
-            return disturbance._replace(drift=effect)
-        return normal
+            return Induced()

@@ -18,8 +18,8 @@ from self_awareness import yaml_file
 from self_awareness.yaml_section import Section, SectionError
 from self_awareness_follow_me.component_spec import (ComponentSpec, Duration, Hypothesis, InView,
                                                      Need, Output, Task)
-from self_awareness_follow_me.effects import (ClockDrift, Crash, Disorder, Faults, Intruder,
-                                              Latency, Loss, Novelty, Starvation)
+from self_awareness_follow_me.effects import (ClockDrift, Crash, Faults, Intruder, Novelty,
+                                              OtherTasks, Setting, Starvation, disordered)
 
 
 @dataclass(frozen=True)
@@ -188,16 +188,16 @@ def _faults(section: Section, components: Tuple[ComponentSpec, ...],
         with section.section('lat') as lat:
             late = tuple(_known(lat, 'components', name, components).name
                          for name in lat.texts('components'))
-            latency = Latency(late, lat.number('delay', low=1e-3))
+            latency = Setting(late, 'delay', lat.number('delay', low=1e-3))
         extra = section.section('extra')
         intruder = _component(extra)
         if intruder.name in [spec.name for spec in components]:
             extra.fail('name', f'{intruder.name!r} is a component; a foreign node has another')
         _check_topics(extra, intruder, datatypes)
         with section.section('order') as order:
-            disordered = _known(order, 'component', order.text('component'), components)
-            if all(len(task.publish) < 2 for task in disordered.tasks):
-                order.fail('component', f'{disordered.name!r} never publishes two messages in a '
+            mixed_up = _known(order, 'component', order.text('component'), components)
+            if all(len(task.publish) < 2 for task in mixed_up.tasks):
+                order.fail('component', f'{mixed_up.name!r} never publishes two messages in a '
                                         'row; choose a component that does')
         with section.section('unknown') as unknown:
             changed = _known(unknown, 'component', unknown.text('component'), components)
@@ -206,9 +206,9 @@ def _faults(section: Section, components: Tuple[ComponentSpec, ...],
             for topic in [o.topic for o in task.publish if o.topic not in changed.outputs()]:
                 unknown.fail('task', f'{changed.name!r} does not publish {topic!r} otherwise')
         with section.section('lossy') as lossy:
-            loss = Loss((), lossy.number('share', low=1e-6, high=1.0))
+            loss = Setting((), 'lost', lossy.number('share', low=1e-6, high=1.0))
     return Faults(crashes[0], crashes[1], starvation, drift, latency, Intruder(intruder),
-                  Disorder((disordered.name,)), Novelty((changed.name,), task), loss)
+                  OtherTasks((mixed_up.name,), disordered), Novelty((changed.name,), task), loss)
 
 
 def _known(section: Section, key: str, name: str,

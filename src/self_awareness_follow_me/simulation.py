@@ -13,8 +13,7 @@ import random
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import (Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, Optional, Tuple,
-                    Union)
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Set, Tuple, Union
 
 import genpy
 import rosbag
@@ -23,8 +22,7 @@ from self_awareness.output_files import replacing
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_follow_me.component import Component, Message, Publish, Request, Wake
 from self_awareness_follow_me.component_spec import ComponentSpec, Value
-from self_awareness_follow_me.effects import (Change, ClockDrift, Crash, Intruder, Silence,
-                                              Starvation)
+from self_awareness_follow_me.effects import Induced, Intruder
 from self_awareness_follow_me.faults import check_form, effect_of
 from self_awareness_follow_me.messages import MessageType
 from self_awareness_follow_me.scenario import Scenario, load_scenario
@@ -108,11 +106,17 @@ def start_of(seed: int) -> float:
 def events(duration_s: float, seed: int, fault: Optional[InducedFault] = None,
            scenario: Optional[Scenario] = None, start_s: float = START_S) -> Iterator[Event]:
     """Return what a recorder would see, in the order of arrival; arguments as for `simulate`."""
+    if not 0.0 < duration_s < float('inf'):
+        raise ValueError(f'the duration must be more than 0 s, not {duration_s}')
+    if not _WARM_UP_NS / SECOND_NS <= start_s < 2 ** 32 - duration_s:
+        raise ValueError('the start must be a time in s since 1970, at least '
+                         f'{_WARM_UP_NS // SECOND_NS}, that fits into a bag, not {start_s}')
     scenario = load_scenario() if scenario is None else scenario
-    return (Event(arrival, source, '/' + message.topic, scenario.datatypes[message.topic],
-                  message, sequence)
-            for arrival, source, message, sequence
-            in _record(scenario, duration_s, seed, fault, start_s))
+    start = nanoseconds(start_s)
+    induced = (Induced() if fault is None else
+               Induced(effect_of(scenario, fault.kind), start + nanoseconds(fault.onset_s)))
+    robot = _Robot(scenario, seed, start - _WARM_UP_NS, induced)
+    return _attach_recorder(robot.run(start + nanoseconds(duration_s)), scenario, start)
 
 
 def simulate(path: Union[str, Path], duration_s: float, seed: int,
@@ -138,15 +142,14 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int,
         OSError: the file cannot be written.
     """
     scenario = load_scenario() if scenario is None else scenario
-    recording = _record(scenario, duration_s, seed, fault, start_s)
+    recording = events(duration_s, seed, fault, scenario, start_s)
     types = {topic: MessageType(datatype) for topic, datatype in scenario.datatypes.items()}
     told = 0
     with replacing(str(path)) as temporary, rosbag.Bag(temporary, 'w') as bag:
-        writer = _Writer(bag, scenario, types)
-        for arrival, source, message, sequence in recording:
-            writer.write(source, message.topic, types[message.topic].to_ros(message, sequence),
-                         genpy.Time(*divmod(arrival, SECOND_NS)))
-            elapsed = (arrival - nanoseconds(start_s)) // SECOND_NS
+        writer = _Writer(bag, scenario)
+        for event in recording:
+            writer.write(event, types[event.message.topic].to_ros(event.message, event.number))
+            elapsed = (event.stamp_ns - nanoseconds(start_s)) // SECOND_NS
             if elapsed > told:
                 progress(elapsed - told)
                 told = elapsed
@@ -156,111 +159,46 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int,
 class _Writer:
     """Writes to a bag with a connection for each publisher, as `rosbag record` does."""
 
-    def __init__(self, bag: rosbag.Bag, scenario: Scenario, types: Dict[str, MessageType]) -> None:
+    def __init__(self, bag: rosbag.Bag, scenario: Scenario) -> None:
         self._bag = bag
-        self._types = types
-        self._latched = {topic for spec in scenario.components
-                         for topic, output in spec.outputs().items() if output.latch}
+        self._latched = _latched(scenario)
         self._connections: Dict[Tuple[str, str], Any] = {}
 
-    def write(self, source: str, topic: str, message: Any, stamp: genpy.Time) -> None:
-        """Write a message that the node `source` published on a topic of the scenario."""
-        name = '/' + topic
+    def write(self, event: Event, message: Any) -> None:
+        """Write what a node published."""
+        source, topic = event.source, event.topic
         # rosbag itself has one connection for each topic, however many nodes publish there.
         connections = self._bag._topic_connections
-        known = self._connections.get((source, name))
-        if known is not None:
-            connections[name] = known
-            self._bag.write(name, message, stamp)
-            return
-        connections.pop(name, None)
-        self._bag.write(name, message, stamp, connection_header=self._header(source, topic))
-        self._connections[source, name] = connections[name]
-
-    def _header(self, source: str, topic: str) -> Dict[str, str]:
-        message_class = self._types[topic].message_class
-        return {'topic': '/' + topic,
-                'type': message_class._type,
-                'md5sum': message_class._md5sum,
-                'message_definition': message_class._full_text,
-                'callerid': source,
-                'latching': '1' if topic in self._latched else '0'}
+        header = None
+        if (source, topic) in self._connections:
+            connections[topic] = self._connections[source, topic]
+        else:
+            connections.pop(topic, None)
+            header = {'topic': topic, 'type': message._type, 'md5sum': message._md5sum,
+                      'message_definition': message._full_text, 'callerid': source,
+                      'latching': '1' if topic in self._latched else '0'}
+        self._bag.write(topic, message, genpy.Time(*divmod(event.stamp_ns, SECOND_NS)),
+                        connection_header=header)
+        self._connections[source, topic] = connections[topic]
 
 
-_Record = Tuple[int, str, Message, int]
-
-
-def _record(scenario: Scenario, duration_s: float, seed: int, fault: Optional[InducedFault],
-            start_s: float) -> Iterator[_Record]:
-    """Check the arguments and return the recording: (arrival, source, message, sequence)."""
-    if not 0.0 < duration_s < float('inf'):
-        raise ValueError(f'the duration must be more than 0 s, not {duration_s}')
-    if not _WARM_UP_NS / SECOND_NS <= start_s < 2 ** 32 - duration_s:
-        raise ValueError('the start must be a time in s since 1970, at least '
-                         f'{_WARM_UP_NS // SECOND_NS}, that fits into a bag, not {start_s}')
-    start = nanoseconds(start_s)
-    robot = _Robot(scenario, seed, start - _WARM_UP_NS, _Effects(scenario, fault, start))
-    return _attach_recorder(robot.run(start + nanoseconds(duration_s)), scenario, start)
-
-
-def _attach_recorder(recording: Iterator[_Record], scenario: Scenario,
-                     start: int) -> Iterator[_Record]:
+def _attach_recorder(recording: Iterator[Event], scenario: Scenario,
+                     start: int) -> Iterator[Event]:
     """Leave out what came before the start, except what latched publishers repeat then."""
-    latched = {topic for spec in scenario.components
-               for topic, output in spec.outputs().items() if output.latch}
-    repeated: Dict[str, _Record] = {}
-    attached = False
-    for record in recording:
-        arrival, source, message, sequence = record
-        if arrival < start:
-            if message.topic in latched:
-                repeated[message.topic] = record
-            continue
-        if not attached:
-            attached = True
-            for _, source, message, sequence in repeated.values():
-                yield start, source, message, sequence
-        yield record
+    repeated: Dict[str, Event] = {}
+    latched = _latched(scenario)
+    for event in recording:
+        if event.stamp_ns >= start:
+            yield from (each._replace(stamp_ns=start) for each in repeated.values())
+            repeated.clear()
+            yield event
+        elif event.topic in latched:
+            repeated[event.topic] = event
 
 
-class _Effects:
-    """What a fault does to the components, by time (ns)."""
-
-    def __init__(self, scenario: Scenario, fault: Optional[InducedFault], start: int) -> None:
-        effect = None if fault is None else effect_of(scenario, fault.kind)
-        self.onset = start + nanoseconds(0.0 if fault is None else fault.onset_s)
-        self.intruder = effect.spec if isinstance(effect, Intruder) else None
-        self._dead: FrozenSet[str] = frozenset()
-        if isinstance(effect, Crash):
-            self._dead = frozenset([effect.component])
-        elif isinstance(effect, Silence):
-            self._dead = frozenset(spec.name for spec in scenario.components)
-        self._starvation = effect if isinstance(effect, Starvation) else None
-        self._drift = effect if isinstance(effect, ClockDrift) else None
-        self._change = effect if isinstance(effect, Change) else None
-
-    def crashed(self, name: str, now: int) -> bool:
-        """Return whether the component of that name is dead."""
-        return name in self._dead and now >= self.onset
-
-    def slowdown(self, now: int) -> float:
-        """Return by how much everything that needs a CPU is stretched, >= 1."""
-        return 1.0 if self._starvation is None else self._starvation.factor(now - self.onset)
-
-    def clock(self, host: str) -> Callable[[int], int]:
-        """Return what the clock of a host shows at a given time."""
-        drift = self._drift
-        if drift is None or drift.host != host:
-            return lambda now: now
-        offset_ns = drift.offset_ns
-        return lambda now: now + offset_ns(now - self.onset)
-
-    def spec_at(self, spec: ComponentSpec) -> Optional[Callable[[int], ComponentSpec]]:
-        """Return what a component does at a given time; None if that never changes."""
-        changed = spec if self._change is None else self._change.changed(spec)
-        if changed is spec:
-            return None
-        return lambda now: changed if now >= self.onset else spec
+def _latched(scenario: Scenario) -> Set[str]:
+    return {f'/{topic}' for spec in scenario.components
+            for topic, output in spec.outputs().items() if output.latch}
 
 
 @dataclass(frozen=True)
@@ -274,35 +212,35 @@ class _Act:
 class _Robot:
     """All components, the messages between them, and the queue of what happens next."""
 
-    def __init__(self, scenario: Scenario, seed: int, begin: int, effects: _Effects) -> None:
+    def __init__(self, scenario: Scenario, seed: int, begin: int, fault: Induced) -> None:
         self._scenario = scenario
-        self._effects = effects
+        self._fault = fault
         # One random stream each: what one component draws does not change the others.
         self._rng = random.Random(f'{seed}/transport')
         self._components: Dict[str, Component] = {}
         self._subscribers: Dict[str, List[str]] = {topic: [] for topic in scenario.datatypes}
         self._sequences: Dict[Tuple[str, str], int] = defaultdict(int)
         self._arrivals: Dict[Tuple[str, str, str], int] = {}
-        self._queue: List[Tuple[int, int, Union[_Act, _Record]]] = []
+        self._queue: List[Tuple[int, int, Union[_Act, Event]]] = []
         self._pushed = 0
         for spec in scenario.components:
             self._add(spec, seed, begin)
-        if effects.intruder is not None:
-            self._add(effects.intruder, seed, effects.onset)
+        if isinstance(fault.effect, Intruder):
+            self._add(fault.effect.spec, seed, fault.onset)
 
-    def run(self, end: int) -> Iterator[_Record]:
+    def run(self, end: int) -> Iterator[Event]:
         """Yield what arrives at the recorder before `end` (ns), in order."""
         while self._queue and self._queue[0][0] < end:
             now, _, item = heapq.heappop(self._queue)
             if not isinstance(item, _Act):
                 yield item
-            elif not self._effects.crashed(item.name, now):
+            elif not self._fault.has_killed(item.name, now):
                 for request in item.call(now):
                     self._schedule(item.name, request, now)
 
     def _add(self, spec: ComponentSpec, seed: int, begin: int) -> None:
         component = Component(spec, random.Random(f'{seed}/{spec.name}'),
-                              self._effects.clock(spec.host), self._effects.spec_at(spec))
+                              self._fault.clock(spec.host), self._fault.spec_at(spec))
         self._components[spec.name] = component
         for topic in spec.inputs():
             self._subscribers[topic].append(spec.name)
@@ -310,7 +248,7 @@ class _Robot:
 
     def _schedule(self, name: str, request: Request, now: int) -> None:
         component = self._components[name]
-        slowdown = self._effects.slowdown(now)
+        slowdown = self._fault.slowdown(now)
         if isinstance(request, Publish):
             self._transmit(name, request, now + request.delay)
         elif isinstance(request, Wake):
@@ -328,7 +266,9 @@ class _Robot:
         if request.lost:
             return
         arrival = self._arrival(name, topic, '', now)
-        self._push(arrival, (arrival, '/' + name, message, self._sequences[name, topic]))
+        self._push(arrival, Event(arrival, f'/{name}', f'/{topic}',
+                                  self._scenario.datatypes[topic], message,
+                                  self._sequences[name, topic]))
         for subscriber in self._subscribers[topic]:
             receive = self._components[subscriber].receive
             self._push(self._arrival(name, topic, subscriber, now),
@@ -342,6 +282,6 @@ class _Robot:
         self._arrivals[connection] = arrival
         return arrival
 
-    def _push(self, at: int, item: Union[_Act, _Record]) -> None:
+    def _push(self, at: int, item: Union[_Act, Event]) -> None:
         self._pushed += 1
         heapq.heappush(self._queue, (at, self._pushed, item))

@@ -9,7 +9,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
 from self_awareness_follow_me.component_spec import Duration, Hypothesis, Need, Task
-from self_awareness_follow_me.effects import ClockDrift, Latency, Starvation
+from self_awareness_follow_me.effects import ClockDrift, Starvation
 from self_awareness_follow_me.scenario import Scenario
 
 # What is a number of seconds, beside durations. A drifting clock stays in proportion to the stamps
@@ -20,7 +20,6 @@ _SECONDS = {
     Hypothesis: ('discard_after',),
     Starvation: ('ramp',),
     ClockDrift: ('drift', 'settle', 'wobble', 'periods'),
-    Latency: ('delay',),
 }
 
 
@@ -31,8 +30,9 @@ def sped_up(scenario: Scenario, speed: float) -> Scenario:
         scenario: the robot.
         speed: > 0; 1: as it is.
     """
+    faults = _scaled(scenario.faults, 1.0 / speed)
     return replace(scenario, components=_scaled(scenario.components, 1.0 / speed),
-                   faults=_scaled(scenario.faults, 1.0 / speed))
+                   faults=replace(faults, lat=replace(faults.lat, value=faults.lat.value / speed)))
 
 
 def _scaled(part: Any, factor: float) -> Any:

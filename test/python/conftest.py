@@ -97,6 +97,17 @@ def wait_until(condition: Callable[[], object], what: str, deadline_s: float = 6
         time.sleep(0.005)
 
 
+def error_of(program: Any, arguments: Sequence[str], capsys: pytest.CaptureFixture[str]) -> str:
+    """Run a program (its module) that must fail, and return the one line that it says."""
+    name = program.__name__.rpartition('.')[2]
+    capsys.readouterr()
+    assert program.main(arguments) == 1
+    error = capsys.readouterr().err
+    line, = (line for line in error.splitlines() if not line.startswith(f'{name}: warning: '))
+    assert line.startswith(f'{name}: error: '), error
+    return line
+
+
 def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
     """Return all that a file says of a model but when it was made; of limits only if asked for."""
     model = copy.copy(model)

@@ -158,24 +158,6 @@ def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_
     assert len((tmp_path / 'w.csv').read_text().splitlines()) > 400
 
 
-def test_a_model_with_sources_refuses_a_robot_without(shared: Path, wheeled_robot: Path,
-                                                      tmp_path: Path, capsys) -> None:
-    model = str(tmp_path / 'm')
-    _train(model, str(wheeled_robot / 'jan17_normal.bag'))
-    guardian = str(shared / 'data' / 'guardian' / 'facing_windows.bag')
-    assert score.main([guardian, '--model', model]) == 1
-    assert 'another encoding' in capsys.readouterr().err
-
-
-def test_a_sparse_robot_names_the_types_too_rare_to_judge(shared: Path, tmp_path: Path,
-                                                          capsys) -> None:
-    bags = sorted(str(path) for path in (shared / 'data' / 'social_robot').glob('*.bag'))
-    assert len(bags) == 3
-    assert train.main([*bags, '-o', str(tmp_path / 'm')]) == 0
-    listed = re.findall(r'^  (/\S+ /\S+ \S+): \d+ gaps?$', capsys.readouterr().out, re.MULTILINE)
-    assert len(listed) == 3
-
-
 def test_every_recording_can_be_trained_on_and_scored(shared: Path, tmp_path: Path,
                                                       capsys) -> None:
     bags = sorted((shared / 'data').glob('*/*.bag'))

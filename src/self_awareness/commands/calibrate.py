@@ -2,11 +2,10 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import os
 import time
 from statistics import median
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -22,13 +21,13 @@ from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDE
                                              normal_run, recorded_fault)
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
-from self_awareness.judging import evidence_judge, paper_judge
-from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, replacing
+from self_awareness.judging import evidence_judge, load_model, paper_judge
+from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, save_table
 from self_awareness.parts import BagPart, Named, by_folder, look
 from self_awareness.recordings import RecordingEvents
-from self_awareness.reporting import coverage_text, csv_text, evidence_report
-from self_awareness.reporting.number_text import rounded
+from self_awareness.reporting import coverage_text, evidence_report
 from self_awareness.reporting.plots import save_roc
+from self_awareness.reporting.text import cell, rounded
 from self_awareness.stamps import SECOND_NS
 
 _COLUMNS = ('bag', 'fault', 'window_start_ns', 'events', 'unknown', 'score', 'label')
@@ -78,7 +77,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                          '(--faulty) or let some be made (--inject)')
     parameters = cli.detector_parameters(arguments)
     _check_options(arguments)
-    trained = cli.load_model(arguments.model, arguments.detector)
+    trained = load_model(arguments.model, arguments.detector)
     accepted = _accepted(arguments, trained)
     faults = [of_known_source(fault, trained.event_types) for fault in arguments.inject]
 
@@ -113,7 +112,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         cli.warn('calibrate', f'AUC {measured.roc.auc:.3f}: the faults score higher than normal '
                  'operation; this threshold cannot separate them')
     if arguments.csv is not None:
-        _save_csv(arguments.csv, measured.normal + measured.faulty)
+        save_table(arguments.csv, _COLUMNS, _rows(measured.normal + measured.faulty))
     if arguments.roc is not None:
         save_roc(arguments.roc, f'ROC of windows of {trained.window / SECOND_NS:g} s',
                  [(result.fault, result.roc) for result in measured.faults], measured.point)
@@ -313,25 +312,17 @@ def _alarms(result: FaultResult) -> str:
     return text
 
 
-def _save_csv(path: str, runs: Sequence[JudgedRun]) -> None:
-    with replacing(path) as temporary:
-        with open(temporary, 'w', encoding='utf-8', newline='') as file:
-            writer = csv.writer(file, lineterminator='\n')
-            writer.writerow(_COLUMNS)
-            for judged in runs:
-                part = csv_text.cell(str(judged.run.source.part))
-                columns = (judged.verdicts.start, judged.verdicts.events, judged.verdicts.unknown,
-                           judged.scores, judged.labels)
-                for start, events, unknown, score, label in zip(
-                        *(column.tolist() for column in columns)):
-                    writer.writerow((part, judged.run.fault, start, events, unknown, repr(score),
-                                     _LABELS[label]))
+def _rows(runs: Sequence[JudgedRun]) -> Iterator[Sequence[object]]:
+    for judged in runs:
+        part = cell(str(judged.run.source.part))
+        columns = (judged.verdicts.start, judged.verdicts.events, judged.verdicts.unknown,
+                   judged.scores, judged.labels)
+        for start, events, unknown, score, label in zip(*(column.tolist() for column in columns)):
+            yield part, judged.run.fault, start, events, unknown, repr(score), _LABELS[label]
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='calibrate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('calibrate', __doc__, _EPILOG)
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     parser.add_argument('--normal', type=BagPart.parse, nargs='+', action='extend',
                         required=True, default=[], metavar='BAG',

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import math
 import os
 import re
@@ -9,7 +10,9 @@ import signal
 import sys
 from dataclasses import replace
 from types import FrameType
-from typing import Callable, Iterable, List, Optional, Sequence, TypeVar
+from typing import Any, Callable, Iterable, List, Optional, Sequence, TypeVar
+
+import rosgraph
 
 from self_awareness import (SHORTEST_WINDOW, VERSION, BagError, DetectorParameters, ModelFileError,
                             TrainedModel, UnknownEvents, printable, recordings)
@@ -22,15 +25,29 @@ _Value = TypeVar('_Value')
 Work = Callable[[argparse.Namespace], Optional[int]]
 """What a program does with its arguments; it may return an exit code."""
 
-PLOT_ENDINGS = ('.png', '.pdf', '.svg')
-"""Of files of pictures: the ending says the format."""
-
 _INTERRUPTED = 130
 _LONGEST_S = 86400.0
 _UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
             'error': UnknownEvents.ERROR}
-_MOST = 10_000
 _MOST_WINDOWS = 100_000
+
+
+def parser(program: str, about: Optional[str], epilog: str = '') -> argparse.ArgumentParser:
+    """Return a parser without arguments yet.
+
+    Args:
+        program: its name.
+        about: the docstring of its module: how it is started, a colon, and what it does.
+        epilog: whose lines stay as they are.
+    """
+    return argparse.ArgumentParser(
+        prog=program, description=(about or '').split(': ', 1)[1].strip(), epilog=epilog,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+
+
+def of_node(argv: Optional[Sequence[str]]) -> List[str]:
+    """Return the arguments of a node: under roslaunch, its name and remappings come with them."""
+    return list(rosgraph.myargv(sys.argv if argv is None else ['', *argv])[1:])
 
 
 def run(parser: argparse.ArgumentParser, work: Work, argv: Optional[Sequence[str]]) -> int:
@@ -136,10 +153,7 @@ def warn(program: str, text: str) -> None:
 
 def seconds(text: str, low: float = 0.0) -> int:
     """Argument type: a time in seconds, from `low` to a day, as nanoseconds."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
+    value = _number(text)
     if not low <= value <= _LONGEST_S:  # false for NaN as well
         raise argparse.ArgumentTypeError(f'expected seconds from {low:g} to {_LONGEST_S:g}, '
                                          f'not {text!r}')
@@ -165,24 +179,29 @@ def offset(text: str) -> float:
     return float(text)
 
 
-def count(text: str) -> int:
+def count(text: str, most: int = 10_000) -> int:
     """Argument type: how many of something, 1 or more."""
-    if not text.isdecimal() or not 1 <= int(text) <= _MOST:
-        raise argparse.ArgumentTypeError(f'expected a number from 1 to {_MOST}, not {text!r}')
+    if not text.isdecimal() or not 1 <= int(text) <= most:
+        raise argparse.ArgumentTypeError(f'expected a number from 1 to {most}, not {text!r}')
     return int(text)
 
 
 def above_zero(what: str) -> Callable[[str], float]:
     """Return an argument type: a number above 0 of something."""
     def convert(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
+        value = _number(text)
         if not 0.0 < value < math.inf:
             raise argparse.ArgumentTypeError(f'expected {what}, more than 0, not {text!r}')
         return value
     return convert
+
+
+def _number(text: str) -> float:
+    """Return a number; NaN: it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan
 
 
 budget = above_zero('false alarms an hour')
@@ -199,12 +218,20 @@ def checked(parse: Callable[[str], _Value]) -> Callable[[str], _Value]:
     return convert
 
 
-def plot_file(text: str) -> str:
-    """Argument type: the name of a picture."""
-    if not text.lower().endswith(PLOT_ENDINGS):
-        raise argparse.ArgumentTypeError(
-            f'expected a name that ends in {", ".join(PLOT_ENDINGS)}, not {text!r}')
-    return text
+def ends_in(*endings: str) -> Callable[[str], str]:
+    """Return an argument type: the name of a file whose ending says what it is."""
+    def check(text: str) -> str:
+        if not text.lower().endswith(endings):
+            raise argparse.ArgumentTypeError(
+                f'expected a name that ends in {", ".join(endings)}, not {text!r}')
+        return text
+    return check
+
+
+plot_file = ends_in('.png', '.pdf', '.svg')
+"""Argument type: the name of a picture."""
+page_file = ends_in('.html')
+"""Argument type: the name of a page; no browser would open another one."""
 
 
 def add_detector_argument(parser: argparse.ArgumentParser) -> None:
@@ -219,21 +246,6 @@ def add_robots_by_folder(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--robots-by-folder', action='store_true',
                         help='the recordings are of several robots: one that does not name its '
                              'robot has the name of its folder')
-
-
-def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedModel:
-    """Return the model of a file, which a detector is to judge by.
-
-    Raises:
-        ModelFileError: it cannot be read.
-        ValueError: it was not trained for this detector.
-    """
-    model = TrainedModel.load(path, watched_only)
-    try:
-        model.require(detector)
-    except ValueError as error:
-        raise ValueError(f'{path}: {error}') from error
-    return model
 
 
 def add_skip_bad(parser: argparse.ArgumentParser) -> None:
@@ -271,6 +283,11 @@ def print_lines(lines: Iterable[str]) -> None:
         print(line)
 
 
+def print_values(values: Any) -> None:
+    """Print plain values as JSON."""
+    print(json.dumps(values, indent=2, allow_nan=False))
+
+
 def say_skipped(program: str, bad: Iterable[str]) -> None:
     """Say at the end which recordings were left out."""
     for line in bad:
@@ -302,12 +319,8 @@ def read_recordings(program: str, model: TrainedModel, named: Named, skip_bad: b
     Raises:
         BadRecordingsError: one cannot be used and is not to be skipped, or none can.
     """
-    events = []
-    for part in named.parts:
-        try:
-            events.append(replace(read_recording(program, model, read(part)), part=part))
-        except (BagError, ValueError) as error:
-            named.bad.append(str(error))
+    events = list(named.each(
+        lambda part: replace(read_recording(program, model, read(part)), part=part)))
     named.check(skip_bad and bool(events))
     return events
 
@@ -367,9 +380,7 @@ def detector_parameters(arguments: argparse.Namespace) -> DetectorParameters:
 
 
 def _windows(text: str) -> int:
-    if not text.isdecimal() or not 1 <= int(text) <= _MOST_WINDOWS:
-        raise argparse.ArgumentTypeError(f'expected a number of windows, not {text!r}')
-    return int(text)
+    return count(text, _MOST_WINDOWS)
 
 
 def _fail(program: str, text: str) -> int:

@@ -2,10 +2,7 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import Optional, Sequence
-
-import rospy
 
 from self_awareness.commands import cli, ros_node
 from self_awareness_follow_me.node import ComponentNode
@@ -15,8 +12,7 @@ from self_awareness_follow_me.speed import sped_up
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run a component under its own name; return the exit code (see cli.run)."""
-    # Under roslaunch, the name of a node comes with the arguments.
-    return cli.run(_parser(), _run, rospy.myargv(sys.argv if argv is None else argv)[1:])
+    return cli.run(_parser(), _run, cli.of_node(argv))
 
 
 def _run(arguments: argparse.Namespace) -> None:
@@ -28,7 +24,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='component', description=__doc__.split(': ', 1)[1])
+    parser = cli.parser('component', __doc__)
     parser.add_argument('name', help='name of the component, or of the intruder, in the scenario')
     parser.add_argument('--scenario', help='scenario file (default: config/follow_me.yaml)')
     parser.add_argument('--seed', type=int, default=0, help='of the random numbers (default: 0)')

@@ -5,8 +5,8 @@ import argparse
 import os
 from typing import Optional, Sequence
 
-from self_awareness import (BagError, BagSummary, EncodingRules, EventLogWriter, encoding_file,
-                            progress, summarise_bag)
+from self_awareness import (BagSummary, EncodingRules, EventLogWriter, encoding_file, progress,
+                            summarise_bag)
 from self_awareness.commands import cli
 from self_awareness.output_files import EVENT_LOG, check_outputs, replacing
 from self_awareness.parts import BagPart
@@ -30,18 +30,16 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _convert(arguments: argparse.Namespace) -> None:
     named = cli.look_at(map(BagPart, arguments.bags), arguments.skip_bad)
+    for part in named.parts:
+        if part.recording is not None:
+            raise ValueError(f'{part.path}: is an event log already')
     bags = [file for part in named.parts for file in part.files]
     check_outputs([(arguments.output, EVENT_LOG)], [*bags, arguments.encoding])
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
     with replacing(arguments.output) as temporary:
         log = EventLogWriter(temporary, arguments.output)
         added = 0
-        for part in named.parts:
-            try:
-                summary = _summary(part)
-            except BagError as error:
-                named.bad.append(str(error))
-                continue
+        for part, summary in named.each(lambda part: (part, summarise_bag(part.files))):
             _add(log, part, summary, encoding)
             added += 1
         named.check(arguments.skip_bad and added > 0)
@@ -50,12 +48,6 @@ def _convert(arguments: argparse.Namespace) -> None:
     size = os.path.getsize(arguments.output)
     cli.say_skipped('convert', named.bad)
     print(f'written: {arguments.output}, {size / 1e6:.1f} MB of {of_bags / 1e6:.1f} MB')
-
-
-def _summary(part: BagPart) -> BagSummary:
-    if part.recording is not None:
-        raise ValueError(f'{part.path}: is an event log already')
-    return summarise_bag(part.files)
 
 
 def _add(log: EventLogWriter, part: BagPart, summary: BagSummary,
@@ -75,9 +67,7 @@ def _add(log: EventLogWriter, part: BagPart, summary: BagSummary,
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='convert', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('convert', __doc__, _EPILOG)
     parser.add_argument('bags', nargs='+', metavar='BAG',
                         help='a recording, or a folder of bags')
     parser.add_argument('-o', '--output', required=True, metavar='LOG', help='file to write')

@@ -1,10 +1,10 @@
-"""The end of scripts/demo.sh: kills a component and reports the alarm as operators get it."""
+"""The end of scripts/demo.sh: kills the laser's driver, prints the alarm as operators get it."""
 from __future__ import annotations
 
 import argparse
 import threading
 import time
-from typing import Dict, Optional, Sequence
+from typing import Callable, Dict, Optional, Sequence
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -29,79 +29,61 @@ class _Operator:
     def __init__(self) -> None:
         self._changed = threading.Condition()
         self._last: Dict[str, DiagnosticStatus] = {}
-        self._first_error: Dict[str, float] = {}
-        rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics)
-        rospy.Subscriber('/diagnostics_agg', DiagnosticArray, self._on_diagnostics)
+        self.error_since: Dict[str, float] = {}
+        """Unix time of the first ERROR of a status [s]."""
+        for topic in ('/diagnostics', '/diagnostics_agg'):
+            rospy.Subscriber(topic, DiagnosticArray, self._on_diagnostics)
 
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
-        now = time.time()
         with self._changed:
             for status in array.status:
                 self._last[status.name] = status
                 if status.level >= DiagnosticStatus.ERROR:
-                    self._first_error.setdefault(status.name, now)
+                    self.error_since.setdefault(status.name, time.time())
             self._changed.notify_all()
 
-    def error_since(self, name: str) -> Optional[float]:
-        """Unix time of the first ERROR of a status [s]; None if there was none."""
-        with self._changed:
-            return self._first_error.get(name)
+    def status(self) -> DiagnosticStatus:
+        """Return what the monitor said last."""
+        return self._last.get(_STATUS, DiagnosticStatus())
 
-    def status(self, name: str) -> DiagnosticStatus:
+    def awaits(self, condition: Callable[[], bool], seconds: float) -> bool:
+        """Wait until something was said; return whether it was."""
         with self._changed:
-            return self._last[name]
-
-    def message(self) -> str:
-        """Return what the monitor said last; empty: nothing."""
-        with self._changed:
-            return self._last[_STATUS].message if _STATUS in self._last else ''
-
-    def await_message(self, text: str, seconds: float) -> bool:
-        """Wait until the monitor's status says `text`."""
-        with self._changed:
-            return self._changed.wait_for(
-                lambda: _STATUS in self._last and text in self._last[_STATUS].message, seconds)
-
-    def await_error(self, name: str, seconds: float) -> bool:
-        with self._changed:
-            return self._changed.wait_for(lambda: name in self._first_error, seconds)
+            return self._changed.wait_for(condition, seconds)
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Kill `player` in the running robot; return 0 if the alarm came after that, and only then."""
-    parser = argparse.ArgumentParser(
-        prog='demo_fault', description='Kills the laser driver of the simulated robot, and prints '
-        'the alarm of the monitor that runs; it is the end of scripts/demo.sh.')
-    return cli.run(parser, _demonstrate, argv)
+    return cli.run(cli.parser('demo_fault', __doc__), _demonstrate, argv)
 
 
 def _demonstrate(_arguments: argparse.Namespace) -> None:
     component = load_scenario().faults.cc1
     rospy.init_node('demo', anonymous=True, disable_signals=True)
     operator = _Operator()
-    if not operator.await_message('normal communication', _SETTLED_WITHIN_S):
-        if not operator.message():
+    if not operator.awaits(lambda: 'normal communication' in operator.status().message,
+                           _SETTLED_WITHIN_S):
+        if not operator.status().message:
             raise ValueError('the monitor says nothing; is it running?')
-        raise ValueError('the monitor does not settle: ' + operator.message() + '; ' + _OTHER_WORK)
+        raise ValueError(f'the monitor does not settle: {operator.status().message}; '
+                         f'{_OTHER_WORK}')
     for _ in waiting(_NORMAL_FOR_S, 'normal operation'):
-        if operator.error_since(_STATUS) is not None:
-            raise ValueError('an alarm came before the fault: ' + operator.message() + '; '
-                             + _OTHER_WORK)
+        if _STATUS in operator.error_since:
+            raise ValueError(f'an alarm came before the fault: {operator.status().message}; '
+                             f'{_OTHER_WORK}')
     killed_at = time.time()
     pid = induction.crash(component)
     print(f'killed {component.component} (kill -9 {pid})')
-    if not operator.await_error(_STATUS, _ALARM_WITHIN_S):
+    if not operator.awaits(lambda: _STATUS in operator.error_since, _ALARM_WITHIN_S):
         raise ValueError(f'no alarm within {_ALARM_WITHIN_S} s')
-    _report(operator, killed_at)
-    if not operator.await_error(_AGGREGATED, _ALARM_WITHIN_S):
+    _report(operator.status(), operator.error_since[_STATUS] - killed_at)
+    if not operator.awaits(lambda: _AGGREGATED in operator.error_since, _ALARM_WITHIN_S):
         raise ValueError('no alarm on /diagnostics_agg')
     print(f'on /diagnostics_agg as {_AGGREGATED}')
 
 
-def _report(operator: _Operator, killed_at: float) -> None:
-    status = operator.status(_STATUS)
+def _report(status: DiagnosticStatus, seconds: float) -> None:
     values = {pair.key: pair.value for pair in status.values}
-    seconds = (operator.error_since(_STATUS) or killed_at) - killed_at
     print(f'\nALARM on /diagnostics {seconds:.2f} s after the fault')
     print(f'  {status.name}')
     print(f'  {status.message}')

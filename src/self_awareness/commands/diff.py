@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 from typing import Optional, Sequence
 
 from self_awareness.commands import cli
@@ -12,7 +11,7 @@ from self_awareness.output_files import PAGE, check_outputs
 from self_awareness.parts import BagPart
 from self_awareness.reporting import diff_text
 from self_awareness.reporting.report.diff_page import save_diff
-from self_awareness.reporting.report.page import check_installed, check_name
+from self_awareness.reporting.report.page import check_installed
 
 _EPILOG = """\
 Give two models, or a model and recordings: a bag, a part of it (BAG@START-END), or a folder of
@@ -38,23 +37,20 @@ def _diff(arguments: argparse.Namespace) -> None:
     before, after, bad = read_sides(arguments.before, arguments.after, arguments.skip_bad)
     comparison = compare(before, after)
     if arguments.json:
-        print(json.dumps(diff_text.as_values(comparison), indent=2))
+        cli.print_values(diff_text.as_values(comparison))
     else:
-        for line in diff_text.lines(comparison):
-            print(line)
+        cli.print_lines(diff_text.lines(comparison))
     if arguments.html is not None:
         save_diff(arguments.html, comparison)
     cli.say_skipped('diff', bad)
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='diff', description=__doc__.split(': ', 1)[1],
-                                     epilog=_EPILOG,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('diff', __doc__, _EPILOG)
     parser.add_argument('before', metavar='A', help='how it was')
     parser.add_argument('after', metavar='B', help='how it is')
     parser.add_argument('--json', action='store_true', help='print JSON, for programs')
-    parser.add_argument('--html', type=cli.checked(check_name), metavar='FILE.html',
+    parser.add_argument('--html', type=cli.page_file, metavar='FILE.html',
                         help='write a page for a browser, too')
     cli.add_skip_bad(parser)
     return parser

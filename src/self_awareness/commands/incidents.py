@@ -4,7 +4,6 @@ from __future__ import annotations
 import argparse
 import fnmatch
 import glob
-import json
 import os
 import re
 import time
@@ -35,27 +34,21 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _incidents(arguments: argparse.Namespace) -> None:
-    read = [(path, _read(path)) for path in arguments.file or _files()]
-    actions = {path: _actions(path) for path, _ in read}
-    if arguments.id is not None:
-        read = [(path, _one(kept, arguments.id)) for path, kept in read]
-        if not any(kept for _, kept in read):
-            raise ValueError(f'no incident {arguments.id} in '
-                             f'{", ".join(path for path, _ in read)}')
-    else:
-        read = [(path, [each for each in kept if _is_asked_for(each, arguments)])
-                for path, kept in read]
+    found = [(path, [each for each in _read(path) if _is_asked_for(each, arguments)],
+              _actions(path)) for path in arguments.file or _files()]
+    if arguments.id is not None and not any(kept for _, kept, _ in found):
+        raise ValueError(f'no incident {arguments.id} in '
+                         f'{", ".join(path for path, _, _ in found)}')
     if arguments.json:
-        values = [{'file': path, **incidents_text.as_values(each, actions[path])}
-                  for path, kept in read for each in kept]
-        print(json.dumps(values, indent=2, allow_nan=False))
-    elif arguments.id is not None:
-        for path, kept in read:
+        cli.print_values([{'file': path, **incidents_text.as_values(each, actions)}
+                          for path, kept, actions in found for each in kept])
+        return
+    for path, kept, actions in found:
+        if arguments.id is None:
+            _print_list(path, kept, actions, arguments.near_misses)
+        else:
             for each in kept:
-                print('\n'.join(incidents_text.details(each, actions[path])))
-    else:
-        for path, kept in read:
-            _print_list(path, kept, actions[path], arguments.near_misses)
+                cli.print_lines(incidents_text.details(each, actions))
 
 
 def _print_list(path: str, kept: List[KeptIncident], actions: Sequence[Action],
@@ -64,7 +57,7 @@ def _print_list(path: str, kept: List[KeptIncident], actions: Sequence[Action],
     is_open = sum(not each.over for each in shown)
     print(f'{path}: incidents: {len(shown)}, open: {is_open}')
     if shown:
-        print('\n'.join(f'  {line}' for line in incidents_text.table(shown, actions)))
+        cli.print_lines(f'  {line}' for line in incidents_text.table(shown, actions))
     if len(shown) < len(kept):
         print(f'  besides, components with near misses only: {len(kept) - len(shown)} '
               '(--near-misses)')
@@ -103,13 +96,10 @@ def _actions(incidents: str) -> Sequence[Action]:
         return ()
 
 
-def _one(kept: Sequence[KeptIncident], number: int) -> List[KeptIncident]:
-    return [each for each in kept if each.id == number]
-
-
 def _is_asked_for(incident: KeptIncident, arguments: argparse.Namespace) -> bool:
     since, until = arguments.since, arguments.until
-    return ((arguments.over is None or incident.over == arguments.over)
+    return (arguments.id in (None, incident.id)
+            and (arguments.over is None or incident.over == arguments.over)
             and (since is None or not incident.over or incident.ended >= since)
             and (until is None or incident.opened <= until)
             and (arguments.component is None
@@ -132,9 +122,7 @@ def _stamp(text: str) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='incidents', description=(__doc__ or '').split(': ', 1)[1].strip(), epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('incidents', __doc__, _EPILOG)
     parser.add_argument('id', type=int, nargs='?', metavar='ID',
                         help='show all of this one, and how to make its report')
     parser.add_argument('--file', action='append', metavar='FILE',

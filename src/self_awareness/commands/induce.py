@@ -55,11 +55,9 @@ def _last(what: str, duration_s: Optional[float]) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='induce', description=__doc__.split(': ', 1)[1], epilog=f'faults:\n{described()}',
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('induce', __doc__, f'faults:\n{described()}')
     parser.add_argument('kind', type=in_short, metavar='KIND', help='one of the faults below')
-    parser.add_argument('--duration', type=cli.checked(_duration_s), metavar='S',
+    parser.add_argument('--duration', type=cli.above_zero('a time in s'), metavar='S',
                         help='how long it lasts in s; not for faults that kill nodes (default: '
                              'until Ctrl-C)')
     parser.add_argument('--namespace', default='', metavar='NS',
@@ -67,10 +65,3 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--scenario', type=Path, metavar='FILE',
                         help='the robot (default: config/follow_me.yaml of the package)')
     return parser
-
-
-def _duration_s(text: str) -> float:
-    value = float(text)
-    if not 0.0 < value < float('inf'):
-        raise ValueError(f'must be more than 0 s, not {text}')
-    return value

@@ -2,31 +2,26 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import shutil
 from collections import Counter
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import (BagError, EventType, ModelFileError, PaperModel, ResultBag,
-                            TrainedModel, recordings_in_event_log)
+from self_awareness import (EventType, ModelFileError, PaperModel, ResultBag, TrainedModel,
+                            recordings_in_event_log)
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.learning.age import age_of, logs_of
 from self_awareness.parts import BagPart, look
 from self_awareness.recordings import is_bag
-from self_awareness.reporting import age_text, histogram_text
-from self_awareness.reporting import (coverage_text, rates_text, recordings_text,
-                                      relations_text, robots_text, tuning_text, unheard_text)
-from self_awareness.reporting.event_log_summary import summarise_event_log
+from self_awareness.reporting import (age_text, coverage_text, delay_bins, rates_text,
+                                      recordings_text, relations_text)
 from self_awareness.reporting.evidence_report import counts
-from self_awareness.reporting.model_summary import summarise
-from self_awareness.reporting.number_text import rounded
-from self_awareness.reporting.result_summary import summarise_results
-from self_awareness.reporting.version_summary import describe_version
+from self_awareness.reporting.file_summary import (describe_version, summarise_event_log,
+                                                   summarise_results)
+from self_awareness.reporting.model_summary import summarise, tuning_lines
+from self_awareness.reporting.text import rounded
 from self_awareness.stamps import moment, span
-
-_DRAWN = 0.99  # share of the delays that have rows of their own
 
 _LIMITS_OF = {'held-out': 'of recordings that were not trained on',
               'cross-fit': 'preliminary, of the training alone'}
@@ -59,9 +54,9 @@ def _info(arguments: argparse.Namespace) -> None:
     if arguments.pair is not None:
         _print_pair(model, *(_find(model.event_types, text) for text in arguments.pair))
     elif arguments.tuning:
-        _print_lines(tuning_text.lines(model.tuning))
+        cli.print_lines(tuning_lines(model.tuning))
     elif arguments.json:
-        print(json.dumps(summarise(model), indent=2, allow_nan=False))
+        cli.print_values(summarise(model))
     else:
         _print(summarise(model))
 
@@ -71,7 +66,7 @@ def _info_of_age(arguments: argparse.Namespace) -> None:
     named = logs_of(arguments.model, arguments.age)
     found = age_of(arguments.model, _load(arguments.model), named, arguments.skip_bad)
     if arguments.json:
-        print(json.dumps(age_text.summarise(found), indent=2, allow_nan=False))
+        cli.print_values(age_text.summarise(found))
     else:
         cli.print_lines([*named.told, *age_text.lines(found)])
     cli.say_skipped('info', named.bad)
@@ -81,15 +76,10 @@ def _info_of_rates(arguments: argparse.Namespace) -> None:
     _refuse(arguments, 'says nothing of rates (--model)')
     trained = TrainedModel.load(arguments.usual)
     named = look(map(BagPart.parse, [arguments.model, *arguments.more]))
-    found = []
-    for part in named.parts:
-        try:
-            found.append(rates_text.summarise(
-                trained, cli.read_recording('info', trained, part)))
-        except (BagError, ValueError) as error:
-            named.bad.append(str(error))
+    found = list(named.each(lambda part: rates_text.summarise(
+        trained, cli.read_recording('info', trained, part))))
     if arguments.json:
-        print(json.dumps({'recordings': found, 'skipped': named.bad}, indent=2, allow_nan=False))
+        cli.print_values({'recordings': found, 'skipped': named.bad})
     else:
         cli.print_lines(named.told)
         for each in found:
@@ -102,7 +92,7 @@ def _info_of_recordings(arguments: argparse.Namespace) -> None:
     named = look(map(BagPart.parse, [arguments.model, *arguments.more]))
     summary = recordings_text.summarise(named)
     if arguments.json:
-        print(json.dumps(summary, indent=2))
+        cli.print_values(summary)
     else:
         cli.print_lines([*named.told, *recordings_text.lines(summary)])
     cli.end_with('info', named, arguments.skip_bad)
@@ -132,7 +122,7 @@ def _info_of_log(arguments: argparse.Namespace, recordings: int) -> None:
     _refuse(arguments, f'is for models, and {arguments.model} is an event log')
     summary = summarise_event_log(arguments.model, recordings)
     if arguments.json:
-        print(json.dumps(summary, indent=2, allow_nan=False))
+        cli.print_values(summary)
     else:
         _print_log(summary)
 
@@ -142,7 +132,7 @@ def _info_of_results(arguments: argparse.Namespace) -> None:
         raise ValueError(f'--pair: is for models, and {arguments.model} is a result bag')
     summary = summarise_results(arguments.model)
     if arguments.json:
-        print(json.dumps(summary, indent=2, allow_nan=False))
+        cli.print_values(summary)
         return
     print(f'result bag   {summary["size"] / 1e6:.1f} MB, {summary["messages"]} messages')
     _print_version(summary['version'])
@@ -160,9 +150,7 @@ def _print_log(summary: Dict[str, Any]) -> None:
           + (f', starts of the robot: {summary["starts"]}' if summary['starts'] else ''))
     for number, recording in enumerate(summary['recordings'], 1):
         start = recording['robot_start_ns']
-        print(f'    #{number} {recording["bag"]}: {recording["duration"]:.1f} s, '
-              f'{recording["events"]} events, from {moment(recording["start_ns"])}'
-              + ('' if recording['robot'] is None else f', of {recording["robot"]}')
+        print(f'    #{number} {_recording(recording)}'
               + ('' if start is None else f', robot started {moment(start)}')
               + (f', {recording["dropped"]} messages were dropped' if recording['dropped']
                  else ''))
@@ -256,7 +244,8 @@ def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
         print(f'  not judged: {"; ".join(evidence["not_judged"])}')
     if evidence['left_out']:
         print(f'  left out: {", ".join(evidence["left_out"])}: this version does not judge them')
-    for line in [*unheard_text.lines(evidence['unheard']), *robots_text.lines(evidence)]:
+    for line in [*coverage_text.unheard_lines(evidence['unheard']),
+                 *coverage_text.optional_lines(evidence)]:
         print(f'  {line}')
     calibration = evidence['calibration']
     if calibration is None:
@@ -298,10 +287,13 @@ def _print_calibration(calibration: Optional[Dict[str, Any]]) -> None:
 
 
 def _print_recordings(recordings: Sequence[Dict[str, Any]]) -> None:
-    for recording in recordings:
-        print(f'    {recording["bag"]}: {recording["duration"]:.1f} s, '
-              f'{recording["events"]} events, from {moment(recording["start_ns"])}'
-              + ('' if recording['robot'] is None else f', of {recording["robot"]}'))
+    cli.print_lines(f'    {_recording(recording)}' for recording in recordings)
+
+
+def _recording(recording: Dict[str, Any]) -> str:
+    return (f'{recording["bag"]}: {recording["duration"]:.1f} s, {recording["events"]} events, '
+            f'from {moment(recording["start_ns"])}'
+            + ('' if recording['robot'] is None else f', of {recording["robot"]}'))
 
 
 def _or_none(value: Optional[float]) -> str:
@@ -311,22 +303,17 @@ def _or_none(value: Optional[float]) -> str:
 def _print_pair(model: TrainedModel, first: int, second: int) -> None:
     print(f'delay from the last  {model.event_types[first]}')
     print(f'to the current       {model.event_types[second]}')
-    width = max(10, shutil.get_terminal_size().columns - 40)
     if model.detectors == EVIDENCE:
-        _print_lines(histogram_text.draw_bins(model.delays(first, second), width))
-        return
-    counts = model.histogram(first, second)
-    computed = PaperModel(model)
-    print(f'count {sum(counts.values())}, entropy {computed.entropies[first, second]:.4g} bit, '
-          f'weight {computed.weight(first, second):.4g}')
-    _print_lines(histogram_text.draw(counts, model.bin_size, model.horizon_bins,
-                                     model.quantile(first, second, _DRAWN), width)
-                 if counts else [])
-
-
-def _print_lines(lines: Sequence[str]) -> None:
-    for line in lines or ['no delay was seen in training']:
-        print(line)
+        bins = delay_bins.log_bins(model.delays(first, second))
+    else:
+        bins = delay_bins.paper_bins(model, first, second)
+        computed = PaperModel(model)
+        print(f'count {sum(count for _, _, count in bins)}, entropy '
+              f'{computed.entropies[first, second]:.4g} bit, '
+              f'weight {computed.weight(first, second):.4g}')
+    width = max(10, shutil.get_terminal_size().columns - 40)
+    cli.print_lines(delay_bins.drawn(bins, width) if bins
+                    else ['no delay was seen in training'])
 
 
 def _find(event_types: Sequence[EventType], text: str) -> int:
@@ -352,7 +339,7 @@ def _bare(text: str) -> str:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='info', description=__doc__.split(': ', 1)[1])
+    parser = cli.parser('info', __doc__)
     parser.add_argument('model', metavar='MODEL',
                         help='file written by train or calibrate, an event log, a result bag of '
                              'score, or a folder of recordings')

@@ -34,10 +34,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     Returns:
         See cli.run; 3 if it could go on with what it has, once it is started again.
     """
-    given = sys.argv if argv is None else ['', *argv]
-    # Under roslaunch, the name of a node comes with the arguments.
     try:
-        return cli.run(_parser(), _learn, rospy.myargv(given)[1:])
+        return cli.run(_parser(), _learn, cli.of_node(argv))
     except RecorderCrash as crash:
         print(f'learn: error: {crash}', file=sys.stderr)
         return _START_AGAIN
@@ -89,9 +87,7 @@ def _become_monitor() -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='learn', description=__doc__.split(': ', 1)[1].strip(), epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('learn', __doc__, _EPILOG)
     parser.add_argument('--hours', type=cli.above_zero('hours'), default=2.0, metavar='N',
                         help='of recordings to learn from, more than 0 (default: 2)')
     parser.add_argument('--logs', metavar='FOLDER',

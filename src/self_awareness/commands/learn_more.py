@@ -9,6 +9,7 @@ from self_awareness.calibration.heads_and_tails import START_UP_S
 from self_awareness.commands import cli
 from self_awareness.comparison.changes import compare
 from self_awareness.comparison.sides import with_recordings
+from self_awareness.judging import load_model
 from self_awareness.learning import age, more, programs
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.reporting import age_text, diff_text
@@ -41,10 +42,9 @@ def _learn_more(arguments: argparse.Namespace) -> None:
     cli.say_found(named, arguments.skip_bad)
     check_outputs([(new, MODEL)], [arguments.model, *(file for part in named.parts
                                                       for file in part.files)])
-    trained = cli.load_model(arguments.model, 'evidence')
+    trained = load_model(arguments.model, 'evidence')
     found = age.age_of(arguments.model, trained, named, arguments.skip_bad)
-    for line in age_text.lines(found):
-        print(line)
+    cli.print_lines(age_text.lines(found))
     division = more.divided(trained, found, arguments.start_up)
     if not division.training:
         raise ValueError('no recording is left to learn from (the reasons are above); name '
@@ -71,9 +71,7 @@ def _take(new: str, model: str) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='learn_more', description=__doc__.split(': ', 1)[1],
-                                     epilog=_EPILOG,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('learn_more', __doc__, _EPILOG)
     parser.add_argument('logs', nargs='*', metavar='LOG',
                         help='a recording of normal operation since, or a folder of them '
                              '(default: MODEL.kept)')

@@ -84,9 +84,7 @@ def _load(path: str, known: DistinctRecordings, renames: Renames) -> TrainedMode
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='merge', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('merge', __doc__, _EPILOG)
     parser.add_argument('models', nargs='+', metavar='MODEL',
                         help='file written by train or merge, or by calibrate')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')

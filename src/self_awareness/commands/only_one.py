@@ -11,13 +11,12 @@ import roslib.packages
 import rosgraph
 
 from self_awareness.commands import cli
+from self_awareness.recovery.node_calls import NodeCalls
 from self_awareness.recovery.node_process import begun, has_another_name
-from self_awareness.recovery.xml_rpc import NoAnswer, ask
+from self_awareness.recovery.xml_rpc import NoAnswer
 
 _PROGRAM = 'only_one'
-_MASTER = 'the master'
 _WITHIN_S = 3.0
-_MOST = 1_000_000  # bytes of an answer
 _POLL_S = 1.0
 _START_AGAIN = 3
 
@@ -48,11 +47,12 @@ def _start(arguments: argparse.Namespace) -> None:
     if not found:
         raise ValueError(f'{arguments.program} is not there: was the package built?')
     name = _name(arguments.arguments)
-    _await_master(name)
-    running = _running(name)
+    calls = NodeCalls(name, _WITHIN_S)
+    _await_master(calls, name)
+    running = _running(calls, name)
     if arguments.parameters:
         launched = rosgraph.names.resolve_name(arguments.parameters, name)
-        _take(launched, name, kept=not running)
+        _take(calls, launched, name, kept=not running)
     if running:
         raise ValueError(f'{name} runs already ({running}): stop it first (end its roslaunch, or '
                          f'`rosnode kill {name}`), or give this one another name')
@@ -69,16 +69,12 @@ def _name(words: Sequence[str]) -> str:
         rosgraph.names.get_ros_namespace(argv=list(words)), own[-1])
 
 
-def _master(name: str, method: str, *words: Any) -> Any:
-    return ask(_MASTER, rosgraph.get_master_uri(), _WITHIN_S, _MOST, method, name, *words)
-
-
-def _await_master(name: str) -> None:
+def _await_master(calls: NodeCalls, name: str) -> None:
     """Wait for the master, as the node itself would: only it knows who runs."""
     told = False
     while True:
         try:
-            _master(name, 'getPid')
+            calls.master('getPid')
             return
         except NoAnswer as error:
             if not told:
@@ -87,57 +83,55 @@ def _await_master(name: str) -> None:
         time.sleep(_POLL_S)
 
 
-def _running(name: str) -> str:
+def _running(calls: NodeCalls, name: str) -> str:
     """Return which process has the name, in words; empty: there is none."""
     try:
-        address = _master(name, 'lookupNode', name)
+        address = calls.address(name)
     except NoAnswer:
-        _master(name, 'getPid')  # it does answer: nobody is registered
+        calls.master('getPid')  # it does answer: nobody is registered
         return ''
     try:
-        pid = int(ask(name, address, _WITHIN_S, _MOST, 'getPid', name))
-    except (NoAnswer, ValueError, TypeError):
+        pid = calls.process_id(name, address)
+        is_here = calls.is_here(address)
+    except NoAnswer:
         return ''  # it is dead, or hangs
-    host = rosgraph.network.parse_http_host_and_port(address)[0]
     since = ''
-    if rosgraph.network.is_local_address(host):
+    if is_here:
         if has_another_name(pid, name):
             return ''  # which has the port of the dead one
         began = begun(pid)  # None: in another container
         if began is not None:
             since = time.strftime(', since %Y-%m-%d %H:%M:%S', time.localtime(began))
-    return f'pid {pid} on {host}{since}'
+    return f'pid {pid} on {rosgraph.network.parse_http_host_and_port(address)[0]}{since}'
 
 
-def _take(launched: str, name: str, kept: bool) -> None:
+def _take(calls: NodeCalls, launched: str, name: str, kept: bool) -> None:
     """Move what roslaunch has set to the private parameters of the node.
 
     roslaunch sets parameters before it starts nodes. Were they the private ones at once, those of
     a node that runs already would be overwritten. If a node is started again, there are none.
     """
     try:
-        given = _master(name, 'getParam', launched)
+        given = calls.master('getParam', launched)
         if kept:
-            _set(name, name, given)
-        _master(name, 'deleteParam', launched)
+            _set(calls, name, given)
+        calls.master('deleteParam', launched)
     except NoAnswer:
-        if kept and _master(name, 'hasParam', launched):
+        if kept and calls.master('hasParam', launched):
             raise  # else they were taken before
 
 
-def _set(caller: str, key: str, value: Any) -> None:
+def _set(calls: NodeCalls, key: str, value: Any) -> None:
     """Set each parameter for itself: others of the node stay."""
     if isinstance(value, dict):
         for below, each in value.items():
-            _set(caller, f'{key}/{below}', each)
+            _set(calls, f'{key}/{below}', each)
     else:
-        _master(caller, 'setParam', key, value)
+        calls.master('setParam', key, value)
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog=_PROGRAM, description=__doc__.split(': ', 1)[1].strip(), epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser(_PROGRAM, __doc__, _EPILOG)
     parser.add_argument('--parameters', metavar='NAMESPACE',
                         help='move the parameters of this namespace to the private ones of the '
                              'node, if it is started')

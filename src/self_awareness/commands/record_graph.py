@@ -5,11 +5,8 @@ from __future__ import annotations
 import argparse
 import glob
 import os
-import sys
 import time
 from typing import Optional, Sequence, Set
-
-import rospy
 
 from self_awareness.commands import cli
 from self_awareness.training import live_graph
@@ -26,8 +23,7 @@ itself if it lies beside the bag. Only the master is asked, once a second; no no
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the program; return its exit code (see cli.run)."""
-    # Under roslaunch, the name of a node comes with the arguments.
-    return cli.run(_parser(), _record, rospy.myargv(sys.argv if argv is None else ['', *argv])[1:])
+    return cli.run(_parser(), _record, cli.of_node(argv))
 
 
 def _record(arguments: argparse.Namespace) -> None:
@@ -56,9 +52,7 @@ def _record(arguments: argparse.Namespace) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='record_graph', description=__doc__.split(': ', 1)[1].strip(), epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('record_graph', __doc__, _EPILOG)
     parser.add_argument('prefix', metavar='PREFIX',
                         help='beginning of the paths of the bags, as rosbag record was told')
     return parser

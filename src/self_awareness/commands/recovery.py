@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import sys
 import traceback
 from contextlib import contextmanager
 from typing import Iterator, Optional, Sequence
@@ -30,9 +29,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         see cli.run; 1: the rules cannot be used. 3 if it failed for another reason, so that it may
         be started again (launch/until_refused.sh).
     """
-    given = sys.argv if argv is None else ['', *argv]
     try:
-        return cli.run(_parser(), _recover, rospy.myargv(given)[1:])
+        return cli.run(_parser(), _recover, cli.of_node(argv))
     except _Failed:
         traceback.print_exc()
         return _START_AGAIN
@@ -61,9 +59,7 @@ def _failing() -> Iterator[None]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='recovery.py', description=(__doc__ or '').split(': ', 1)[1].strip(), epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('recovery.py', __doc__, _EPILOG)
     parser.add_argument('rules', metavar='FILE', help='the rules (example: config/recovery.yaml)')
     parser.add_argument('--monitor', default='/self_awareness', metavar='NAME',
                         help='of the monitor (default: /self_awareness)')

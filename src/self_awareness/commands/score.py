@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import json
 import math
 import webbrowser
@@ -10,28 +9,26 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence
 
-import numpy as np
-
-from self_awareness import (EVIDENCE_THRESHOLD, Alarm, BagError, EvidenceModel, PaperModel,
-                            Suspect, TrainedModel)
+from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, PaperModel, Suspect,
+                            TrainedModel)
 from self_awareness import accepted_file, alarms
 from self_awareness.calibration.heads_and_tails import stopped_before_end
 from self_awareness.commands import cli
-from self_awareness.judging import evidence_judge, paper_judge
+from self_awareness.judging import evidence_judge, load_model, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
-                                         replacing)
+                                         replacing, save_table)
 from self_awareness.parts import BagPart, look
-from self_awareness.recordings import (RecordingEvents, in_words, unknown_modes,
-                                       unknown_types)
-from self_awareness.reporting import coverage_text, csv_text
-from self_awareness.reporting.number_text import of_limit
-from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
+from self_awareness.recordings import RecordingEvents, in_words, unknown
+from self_awareness.reporting import coverage_text
+from self_awareness.reporting.plots import ScorePlot, save_scores
 from self_awareness.reporting.report import neighbours
 from self_awareness.reporting.report.incidents import as_values, incidents, place_of
 from self_awareness.reporting.report.intervals import intervals
 from self_awareness.reporting.report.judged import Judged, JudgedBy
-from self_awareness.reporting.report.page import check_installed, check_name, save_report
+from self_awareness.reporting.report.page import check_installed, save_report
 from self_awareness.reporting.report.section import section
+from self_awareness.reporting.report.timeline import timeline
+from self_awareness.reporting.text import cell, of_limit
 from self_awareness.results import check_apart, result_bag
 from self_awareness.stamps import SECOND_NS, span
 
@@ -81,7 +78,7 @@ def _score(arguments: argparse.Namespace) -> int:
     check_apart(arguments.result_bag, named.parts)
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
-    trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)
+    trained = load_model(arguments.model, arguments.detector, watched_only=not paper)
     evidence = None if paper else EvidenceModel(trained)
     if evidence is None:
         judge = paper_judge(trained, PaperModel(trained), trained.threshold, parameters)
@@ -106,27 +103,19 @@ def _score(arguments: argparse.Namespace) -> int:
     judged: List[Judged] = []
     with result_bag(arguments.result_bag, arguments.model, trained,
                     threshold is not None, coverage) as replay:
-        for part in named.parts:
-            try:
-                recording = cli.read_recording('score', trained, part)
-            except (BagError, ValueError) as error:
-                named.bad.append(str(error))
-                continue
+        for recording in named.each(lambda part: cli.read_recording('score', trained, part)):
             verdicts = judge(recording.stamps, recording.ids, recording.end,
-                             recording.event_types, replay(recording),
-                             recording.clock_steps, waiting=recording.waiting,
-                             hosts=recording.hosts, missing=recording.missing,
-                             attributes=recording.attributes, senders=recording.senders)
+                             recording.event_types, replay(recording), **recording.known)
             judged.append(Judged(by, recording, verdicts))
             _print(judged[-1])
         if not judged:
             named.check()
     if arguments.csv is not None:
-        _save_csv(arguments.csv, judged, threshold)
+        save_table(arguments.csv, _COLUMNS, _rows(judged, threshold))
     if arguments.json is not None:
         _save_json(arguments.json, judged, missing, named.bad)
     if arguments.plot is not None:
-        save_scores(arguments.plot, [_plot(each, trained.window, threshold) for each in judged])
+        save_scores(arguments.plot, [_plot(each) for each in judged])
     if arguments.report is not None:
         save_report(arguments.report, [section(each, f'recording-{number}')
                                        for number, each in enumerate(judged, 1)])
@@ -196,21 +185,15 @@ def _words(recording: RecordingEvents, suspect: Suspect) -> str:
 
 
 def _print_unknown(recording: RecordingEvents, trained: TrainedModel) -> None:
-    known = len(trained.event_types)
-    counts = np.bincount(recording.ids, minlength=known)
-    new = set(unknown_types(trained, recording))
-    modes = set(unknown_modes(trained, recording))
-    for said, kinds in (
-            ('event types never seen in training', new),
-            ('modes never seen in training: they say nothing', modes),
-            ('event types that nobody subscribed to in training: they are not judged',
-             set(range(known, len(counts))) - new - modes)):
-        found = sorted((-int(counts[kind]), str(recording.event_types[kind])) for kind in kinds
-                       if counts[kind])
+    for said, found in zip(
+            ('event types never seen in training',
+             'modes never seen in training: they say nothing',
+             'event types that nobody subscribed to in training: they are not judged'),
+            unknown(trained, recording)):
         if found:
             print(f'  {said}:')
         for count, name in found:
-            print(f'    {name}: {-count}')
+            print(f'    {name}: {count}')
 
 
 def _save_json(path: str, judged: Sequence[Judged], missing: str, bad: Sequence[str]) -> None:
@@ -233,43 +216,26 @@ def _save_json(path: str, judged: Sequence[Judged], missing: str, bad: Sequence[
         file.write('\n')
 
 
-def _save_csv(path: str, judged: Sequence[Judged], threshold: Optional[float]) -> None:
+def _rows(judged: Sequence[Judged], threshold: Optional[float]) -> Iterator[Sequence[object]]:
     limit = '' if threshold is None else repr(threshold)
-    with replacing(path) as temporary:
-        with open(temporary, 'w', encoding='utf-8', newline='') as file:
-            writer = csv.writer(file, lineterminator='\n')
-            writer.writerow(_COLUMNS)
-            for each in judged:
-                verdicts = each.verdicts
-                part = csv_text.cell(str(each.recording.part))
-                columns = (verdicts.start, verdicts.events, verdicts.unknown, verdicts.score,
-                           verdicts.abnormal)
-                for begin in range(0, len(verdicts.start), _ROWS):  # lists take much memory
-                    for start, events, unknown, score, abnormal in zip(
-                            *(column[begin:begin + _ROWS].tolist() for column in columns)):
-                        writer.writerow((part, start, events, unknown,
-                                         '' if math.isnan(score) else repr(score), limit,
-                                         int(abnormal)))
+    for each in judged:
+        verdicts = each.verdicts
+        part = cell(str(each.recording.part))
+        columns = (verdicts.start, verdicts.events, verdicts.unknown, verdicts.score,
+                   verdicts.abnormal)
+        for begin in range(0, len(verdicts.start), _ROWS):  # lists take much memory
+            for start, events, strange, score, abnormal in zip(
+                    *(column[begin:begin + _ROWS].tolist() for column in columns)):
+                yield (part, start, events, strange, '' if math.isnan(score) else repr(score),
+                       limit, int(abnormal))
 
 
-def _plot(judged: Judged, window: int, threshold: Optional[float]) -> ScorePlot:
-    recording, verdicts = judged.recording, judged.verdicts
-
-    def seconds(stamps: np.ndarray) -> np.ndarray:
-        return (stamps - recording.origin) / SECOND_NS
-
-    edges = np.flatnonzero(np.diff(np.concatenate(([0], verdicts.settling.astype(np.int8), [0]))))
-    starts = seconds(np.append(verdicts.start, verdicts.start[-1] + window))
-    return ScorePlot(
-        title=f'{recording.part}: score of windows of {window / SECOND_NS:g} s',
-        times=starts[:-1],
-        scores=verdicts.score,
-        abnormal=verdicts.abnormal & ~verdicts.settling,
-        threshold=threshold,
-        settling=[(float(starts[a]), float(starts[b])) for a, b in edges.reshape(-1, 2)],
-        alarms=[NamedAlarm(float(seconds(alarm.begin)), float(seconds(alarm.end)),
-                           alarm.suspects[0].component if alarm.suspects else '')
-                for alarm in verdicts.alarms])
+def _plot(judged: Judged) -> ScorePlot:
+    named = [(judged.seconds(alarm.begin), judged.seconds(alarm.end),
+              alarm.suspects[0].component if alarm.suspects else '')
+             for alarm in judged.verdicts.alarms]
+    return ScorePlot(f'{judged.recording.part}: score of windows of '
+                     f'{judged.by.trained.window / SECOND_NS:g} s', timeline(judged), named)
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -285,7 +251,7 @@ def _parser() -> argparse.ArgumentParser:
                         help='write alarms, suspicions and incidents, for programs')
     parser.add_argument('--plot', type=cli.plot_file, metavar='FILE',
                         help='draw the scores over time; the name ends in .png, .pdf or .svg')
-    parser.add_argument('--report', type=cli.checked(check_name), metavar='FILE.html',
+    parser.add_argument('--report', type=cli.page_file, metavar='FILE.html',
                         help='write a page for a browser: who failed, when and why')
     parser.add_argument('--open', action='store_true',
                         help='open the report in a browser')

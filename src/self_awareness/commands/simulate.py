@@ -59,9 +59,7 @@ def _graph(scenario: Scenario, fault: Optional[InducedFault]) -> RobotGraph:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='simulate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('simulate', __doc__, _EPILOG)
     parser.add_argument('-o', '--output', type=Path, required=True, metavar='DIR_OR_BAG',
                         help='a name that ends in .bag, or a folder')
     parser.add_argument('--duration', type=cli.above_zero('a length in s'), default=100.0,

@@ -31,7 +31,7 @@ _GOODBYE_S = 2.0
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _top, rospy.myargv(sys.argv if argv is None else ['', *argv])[1:])
+    return cli.run(_parser(), _top, cli.of_node(argv))
 
 
 def _top(arguments: argparse.Namespace) -> None:
@@ -124,9 +124,7 @@ def _calls(monitor: str) -> Dict[str, Callable[..., str]]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='top', description=(__doc__ or '').split(': ', 1)[1].strip(), epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('top', __doc__, _EPILOG)
     parser.add_argument('monitor', nargs='?', default='/self_awareness', metavar='MONITOR',
                         help='name of the monitor (default: /self_awareness)')
     return parser

@@ -16,7 +16,7 @@ from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.parts import BagPart, by_folder
-from self_awareness.reporting import coverage_text, robots_text, unheard_text
+from self_awareness.reporting import coverage_text
 from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import live_graph, many_bags
@@ -87,9 +87,9 @@ def _train(arguments: argparse.Namespace) -> None:
     for line in coverage_text.lines(coverage_text.summarise(model.coverage()),
                                     model.fewest_gaps):
         print(f'  {line}')
-    for line in unheard_text.lines(unheard_text.summarise(model.unheard)):
+    for line in coverage_text.unheard_lines(coverage_text.unheard(model.unheard)):
         print(f'  {line}')
-    for line in robots_text.lines(robots_text.summarise(model.robots)):
+    for line in coverage_text.optional_lines(coverage_text.of_some_robots(model.robots)):
         print(f'  {line}')
     for line in trained.numbered:
         print(line)
@@ -192,9 +192,7 @@ def _cores() -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='train', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('train', __doc__, _EPILOG)
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
                         help='a recording of normal operation, or a folder of them; delays never '
                              'cross from one to the next')

@@ -9,8 +9,9 @@ from typing import Dict, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (BagError, EventType, EvidenceCounts, EvidenceModel, TrainedModel,
+from self_awareness import (EventType, EvidenceCounts, EvidenceModel, TrainedModel,
                             Training, recordings, recordings_in_event_log)
+from self_awareness.judging import EVIDENCE, load_model
 from self_awareness.parts import BagPart, Named, look
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
@@ -130,11 +131,7 @@ def with_recordings(path: str, name: str, parts: List[BagPart]) -> Tuple[Side, S
         ModelFileError: the model cannot be read.
         ValueError: the model was not trained for the evidence detector.
     """
-    model = TrainedModel.load(path)
-    try:
-        model.require('evidence')
-    except ValueError as error:
-        raise ValueError(f'{path}: {error}') from error
+    model = load_model(path, EVIDENCE)
     return Side(path, model, False), _recording_side(name, Named(parts), model)
 
 
@@ -144,12 +141,7 @@ def _model_of(name: str) -> Optional[TrainedModel]:
     if (part != BagPart(name) or os.path.isdir(name)
             or recordings_in_event_log(name) is not None or recordings.is_bag(name)):
         return None
-    model = TrainedModel.load(name)
-    try:
-        model.require('evidence')
-    except ValueError as error:
-        raise ValueError(f'{name}: {error}') from error
-    return model
+    return load_model(name, EVIDENCE)
 
 
 def _recording_side(name: str, named: Named, like: TrainedModel, skip_bad: bool = False) -> Side:
@@ -163,12 +155,7 @@ def _recording_side(name: str, named: Named, like: TrainedModel, skip_bad: bool 
                         True, False, like.tuning)
     ends: Dict[Kind, End] = {}
     counted = 0
-    for part in named.parts:
-        try:
-            recording = recordings.read(like, part)
-        except (BagError, ValueError) as error:
-            named.bad.append(str(error))
-            continue
+    for recording in named.each(lambda part: recordings.read(like, part)):
         counted += 1
         training.add_events(recording.event_types, recording.stamps, recording.ids,
                             recording.recording, clock_steps=recording.clock_steps)

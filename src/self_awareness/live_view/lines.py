@@ -37,23 +37,23 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
         lines.append((style, cut(f'monitor: {said.itself}', width)))
     if said.told_mode:
         lines.append(('', cut(f'mode: {said.told_mode}', width)))
-    known = said.of_model
+    known = [each for each in said.listed('components') if not is_unknown(each)]
     heard = sum(each.age >= 0.0 for each in known)
     if heard < len(known):
         lines.append(('', cut(f'{heard} of {len(known)} heard so far', width)))
     for style, title, names in (
             ('faint', 'not watched',
              [f'{each.name} ({each.not_watched})' for each in known if each.not_watched]),
-            ('faint', 'delays not watched now', said.disarmed),
-            ('', 'off together, as is accepted', said.off_together),
+            ('faint', 'delays not watched now', said.listed('delays_not_watched')),
+            ('', 'off together, as is accepted', said.listed('off_together')),
             ('', 'new, not accepted', [' on '.join(filter(None, (each.component, each.topic)))
                                        for each in said.strangers])):
         if names:
             lines.append((style, cut(f'{title}: {", ".join(names)}', width)))
-    lines += [('WARN', cut(f'muted: {mute}', width)) for mute in said.mutes[:_MOST_MUTES]]
-    if len(said.mutes) > _MOST_MUTES:
-        lines.append(('WARN', f'muted: {len(said.mutes) - _MOST_MUTES} more'))
-    return lines
+    mutes = said.listed('mutes')
+    if len(mutes) > _MOST_MUTES:
+        mutes[_MOST_MUTES:] = [f'{len(mutes) - _MOST_MUTES} more']
+    return lines + [('WARN', cut(f'muted: {mute}', width)) for mute in mutes]
 
 
 def incidents(said: Said, width: int) -> List[Line]:

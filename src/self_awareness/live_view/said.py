@@ -91,7 +91,7 @@ class Said:
     @property
     def message(self) -> str:
         """Of the whole, in words; empty: there is none yet."""
-        return str(self._statuses[_WHOLE].message) if _WHOLE in self._statuses else ''
+        return str(self._statuses[_WHOLE].message) if self.told else ''
 
     @property
     def score(self) -> float:
@@ -103,32 +103,16 @@ class Said:
         return ''.join(_BARS[min(int(share * (len(_BARS) - 1)), len(_BARS) - 1)]
                        for share in list(self._scores)[-width:])
 
-    @property
-    def of_model(self) -> List[Any]:
-        """The components that the model knows (ComponentState)."""
-        return [each for each in self._list('components') if not is_unknown(each)]
-
-    @property
-    def disarmed(self) -> List[str]:
-        """Whose delays must be as in training before they are watched."""
-        return self._list('delays_not_watched')
+    def listed(self, field: str) -> List[Any]:
+        """Return what a field of the last Components lists; nothing, if there was none."""
+        return list(getattr(self._components, field, ()))
 
     @property
     def strangers(self) -> List[Any]:
         """Who is heard whom training never saw and nobody has accepted, as ~accept takes it."""
         # No name is a pattern, whatever its owner calls himself: it would accept others.
-        return [each for each in self._list('strangers')
+        return [each for each in self.listed('strangers')
                 if '*' not in each.component + each.topic]
-
-    @property
-    def off_together(self) -> List[str]:
-        """Who is off together, as somebody has accepted."""
-        return self._list('off_together')
-
-    @property
-    def mutes(self) -> List[str]:
-        """All mutes, in words."""
-        return self._list('mutes')
 
     @property
     def told_mode(self) -> str:
@@ -180,12 +164,9 @@ class Said:
             'rate': lambda each: -each.rate,
             'age': lambda each: (each.age >= 0.0, -each.age),
             'limit': lambda each: -each.share}
-        return sorted((each for each in self._list('components')
+        return sorted((each for each in self.listed('components')
                        if fnmatch.fnmatch(each.name, asked)),
                       key=lambda each: (is_unknown(each), keys[sort](each), each.name))
-
-    def _list(self, field: str) -> List[Any]:
-        return list(getattr(self._components, field, ()))
 
     def _value(self, name: str, key: str) -> str:
         status = self._statuses.get(name)

@@ -26,10 +26,21 @@ class NodeCalls:
 
     Args:
         name: of who asks.
+        within: an answer of a node has so long to come [s].
     """
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, within: float = ANSWER_S) -> None:
         self._name = name
+        self._within = within
+
+    def master(self, method: str, *words: Any) -> Any:
+        """Call a method of the master; return the value of its answer.
+
+        Raises:
+            NoAnswer: there is none, or that of a failure.
+        """
+        return ask('the master', rosgraph.get_master_uri(), _MASTER_S, _MOST_OF_MASTER, method,
+                   self._name, *words)
 
     def address(self, node: str) -> str:
         """Return the address of a node's slave API.
@@ -37,7 +48,7 @@ class NodeCalls:
         Raises:
             NoAnswer: the master does not know the node, or does not answer.
         """
-        return str(self._ask_master('lookupNode', node))
+        return str(self.master('lookupNode', node))
 
     def parameter(self, name: str) -> Any:
         """Return the value of a parameter; None: there is none.
@@ -45,7 +56,7 @@ class NodeCalls:
         Raises:
             NoAnswer: the master does not answer.
         """
-        return self._ask_master('getParam', name) if self._ask_master('hasParam', name) else None
+        return self.master('getParam', name) if self.master('hasParam', name) else None
 
     def service(self, name: str) -> str:
         """Return the address of a service.
@@ -53,7 +64,7 @@ class NodeCalls:
         Raises:
             NoAnswer: the master does not know the service, or does not answer.
         """
-        return str(self._ask_master('lookupService', name))
+        return str(self.master('lookupService', name))
 
     def is_here(self, address: str) -> bool:
         """Return whether a node runs on this machine.
@@ -74,7 +85,7 @@ class NodeCalls:
             NoAnswer: it does not answer.
         """
         pid = self._ask(node, address, 'getPid')
-        if not isinstance(pid, int):
+        if not isinstance(pid, int) or pid <= 1:
             raise NoAnswer(f'{node} does not tell its process id')
         return pid
 
@@ -94,8 +105,8 @@ class NodeCalls:
         Raises:
             NoAnswer: the master does not answer.
         """
-        publishers, subscribers, _ = self._ask_master('getSystemState')
-        types: Dict[str, str] = dict(self._ask_master('getTopicTypes'))
+        publishers, subscribers, _ = self.master('getSystemState')
+        types: Dict[str, str] = dict(self.master('getTopicTypes'))
         everybody = {node for _, nodes in [*publishers, *subscribers] for node in nodes}
         own = {node for topic, nodes in publishers for node in nodes
                if types.get(topic, '').startswith(_PACKAGE)}
@@ -107,7 +118,7 @@ class NodeCalls:
         Raises:
             NoAnswer: the master does not answer.
         """
-        publishers, subscribers, _ = self._ask_master('getSystemState')
+        publishers, subscribers, _ = self.master('getSystemState')
         hearing = {topic: set(nodes) for topic, nodes in subscribers if topic not in _FOR_ALL}
         found: Dict[str, Set[str]] = {}
         for topic, nodes in publishers:
@@ -121,14 +132,10 @@ class NodeCalls:
         Raises:
             NoAnswer: the master does not answer, or knows of no roslaunch.
         """
-        addresses = self._ask_master('getParam', '/roslaunch/uris')
+        addresses = self.master('getParam', '/roslaunch/uris')
         if not isinstance(addresses, dict):
             raise NoAnswer('the parameter /roslaunch/uris is none of roslaunch')
         return Launchers(str(each) for each in addresses.values())
 
-    def _ask_master(self, method: str, *words: str) -> Any:
-        return ask('the master', rosgraph.get_master_uri(), _MASTER_S, _MOST_OF_MASTER, method,
-                   self._name, *words)
-
     def _ask(self, node: str, address: str, method: str, *words: str) -> Any:
-        return ask(node, address, ANSWER_S, MOST_OF_NODE, method, self._name, *words)
+        return ask(node, address, self._within, MOST_OF_NODE, method, self._name, *words)

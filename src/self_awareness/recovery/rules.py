@@ -18,7 +18,9 @@ MOST_STEPS = 10
 MOST_STOPPED = 5
 """Nodes that a step may stop: it mends a part of the robot."""
 
-_WITHOUT_CULPRIT = ('busy machine', 'all silent', 'two senders')
+BLAME_NOBODY = ('busy machine', 'all silent', 'two senders')
+"""Of incidents: there is nothing to repair."""
+
 _DAY_S = 86400.0
 _LONGEST_GRACE_S = 60.0
 _NAME = re.compile(r'(/[A-Za-z][A-Za-z0-9_]*)+')
@@ -142,7 +144,7 @@ def _rule(section: Section, untouchable: Mapping[str, str]) -> Rule:
         component = _name(section, 'component', section.text('component'))
         kinds = section.texts('kinds')
         for kind in kinds:
-            if kind in _WITHOUT_CULPRIT:
+            if kind in BLAME_NOBODY:
                 section.fail('kinds', f'{kind!r} blames no component, so that there is nothing to '
                              'repair; remove it')
             if kind not in KINDS:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Set
 
 from self_awareness.recovery.ladder import Fault
+from self_awareness.recovery.rules import BLAME_NOBODY
 from self_awareness.stamps import nanoseconds
 
 FRESH_S = 2.0
@@ -19,7 +20,6 @@ _ABNORMAL_S = 0.5
 
 _ERROR = 2  # of SelfAwareness
 _DIED = 'died'
-_NOBODY_IS_TO_BLAME = ('busy machine', 'all silent', 'two senders')
 
 
 @dataclass
@@ -110,7 +110,7 @@ class Watch:
         if window_s > _ABNORMAL_S:
             return (f'the monitor judges by windows of {window_s:g} s; a recovery takes '
                     f'{_ABNORMAL_S:g} s at most')
-        if self._status.level == _ERROR and self._status.kind in _NOBODY_IS_TO_BLAME:
+        if self._status.level == _ERROR and self._status.kind in BLAME_NOBODY:
             return 'the machine is busy, or all are silent: no component is to blame'
         return ''
 

@@ -1,13 +1,15 @@
 """XML-RPC calls whose whole answer is bounded, in time and in bytes."""
 from __future__ import annotations
 
-import http.client
 import socket
 import time
+from contextlib import closing
+from http.client import HTTPConnection, HTTPException
 from typing import Any
+from urllib.parse import urlparse
 from xml.parsers.expat import ExpatError
 from xmlrpc.client import Error as XmlRpcError
-from xmlrpc.client import ServerProxy, Transport
+from xmlrpc.client import dumps, loads
 
 
 class NoAnswer(Exception):
@@ -30,9 +32,18 @@ def ask(whom: str, address: str, within: float, most: int, method: str, *words: 
         NoAnswer: there is none in time, it is too long, or is that of a failure.
     """
     try:
-        with ServerProxy(address, transport=_Bounded(within, most)) as server:
-            code, text, value = getattr(server, method)(*words)
-    except (OSError, http.client.HTTPException, XmlRpcError, ExpatError, ValueError, TypeError,
+        url = urlparse(address)
+        if url.scheme != 'http' or not url.hostname:
+            raise ValueError(f'{address!r} is no address')
+        with closing(_Connection(url.netloc, time.monotonic() + within, most)) as connection:
+            connection.request('POST', url.path or '/', dumps(words, method).encode(),
+                               {'Content-Type': 'text/xml'})
+            response = connection.getresponse()
+            if response.status != 200:
+                raise OSError(f'{response.status} {response.reason}')
+            # What is compressed may become any size. It is not unpacked, and so no answer.
+            (code, text, value), = loads(response.read())[0]
+    except (OSError, HTTPException, XmlRpcError, ExpatError, ValueError, TypeError,
             LookupError) as error:
         raise NoAnswer(f'{whom} does not answer ({error})') from error
     if code != 1:
@@ -55,9 +66,9 @@ class _Socket(socket.socket):
         return number
 
 
-class _Connection(http.client.HTTPConnection):
+class _Connection(HTTPConnection):
 
-    def __init__(self, host: Any, deadline: float, most: int) -> None:
+    def __init__(self, host: str, deadline: float, most: int) -> None:
         super().__init__(host, timeout=_time_to(deadline))
         self._deadline = deadline
         self._most = most
@@ -68,33 +79,6 @@ class _Connection(http.client.HTTPConnection):
         bounded.deadline, bounded.left = self._deadline, self._most
         bounded.settimeout(_time_to(self._deadline))
         self.sock = bounded
-
-
-class _Bounded(Transport):
-    """For one call."""
-
-    # What is compressed may become any size. So it is not wanted, nor unpacked if it comes anyway.
-    accept_gzip_encoding = False
-
-    def __init__(self, within: float, most: int) -> None:
-        super().__init__()
-        self._deadline = time.monotonic() + within
-        self._most = most
-
-    def request(self, *arguments: Any, **keywords: Any) -> Any:
-        return self.single_request(*arguments, **keywords)  # a second attempt would take longer
-
-    def make_connection(self, host: Any) -> http.client.HTTPConnection:
-        name, self._extra_headers, _ = self.get_host_info(host)
-        connection = _Connection(name, self._deadline, self._most)
-        self._connection = host, connection  # to be closed by close()
-        return connection
-
-    def parse_response(self, response: Any) -> Any:
-        parser, unmarshaller = self.getparser()
-        parser.feed(response.read())
-        parser.close()
-        return unmarshaller.close()
 
 
 def _time_to(deadline: float) -> float:

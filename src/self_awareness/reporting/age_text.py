@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, Dict, List
 
 from self_awareness.learning.age import Age
-from self_awareness.reporting.number_text import percent
+from self_awareness.reporting.text import percent
 from self_awareness.stamps import SECOND_NS, moment
 
 _DAY_S = 86_400.0

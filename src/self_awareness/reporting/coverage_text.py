@@ -1,14 +1,15 @@
-"""Says by name how soon faults of each component are found, and who is not watched."""
+"""Says by name how soon faults of each component are found, and who and what is not watched."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 from self_awareness import Coverage
-from self_awareness.reporting.number_text import rounded
-from self_awareness.reporting.text_table import aligned
+from self_awareness.reporting.text import aligned, first_lines, first_of, rounded
 
 _COLUMNS = ('component', 'speaks every', 'death found after', 'late answers')
 _MOST_NAMED = 8
+_MOST_LINES = 20
+_MOST_ROBOTS = 5
 
 
 def summarise(coverage: Sequence[Coverage]) -> List[Dict[str, Any]]:
@@ -31,9 +32,8 @@ def not_watched(found: Sequence[Dict[str, Any]]) -> str:
     names = [each['component'] for each in found if not each['watched']]
     if not names:
         return ''
-    more = f' and {len(names) - _MOST_NAMED} more' if len(names) > _MOST_NAMED else ''
     return (f'{len(names)} of {len(found)} components are not watched: '
-            f'{", ".join(names[:_MOST_NAMED])}{more}')
+            f'{first_of(names, _MOST_NAMED)}')
 
 
 def not_judged(found: Sequence[Dict[str, Any]]) -> List[str]:
@@ -42,9 +42,8 @@ def not_judged(found: Sequence[Dict[str, Any]]) -> List[str]:
     for each in found:
         for blind in each['not_judged']:
             topics.setdefault((blind['what'], blind['why']), []).append(blind['topic'])
-    return [f'not watched: {what} of {", ".join(names[:_MOST_NAMED])}'
-            + (f' and {len(names) - _MOST_NAMED} more' if len(names) > _MOST_NAMED else '')
-            + f': {why}' for (what, why), names in topics.items()]
+    return [f'not watched: {what} of {first_of(names, _MOST_NAMED)}: {why}'
+            for (what, why), names in topics.items()]
 
 
 def table(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[Tuple[str, ...]]:
@@ -74,6 +73,41 @@ def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
     missing = not_watched(found)
     return (aligned(table(found, fewest_gaps)) + ([missing] if missing else [])
             + not_judged(found))
+
+
+def unheard(publications: Iterable[Tuple[str, str]]) -> List[str]:
+    """Return the names of what nobody subscribed to, as TrainedModel.unheard has it, in order."""
+    return [f'{topic} on {source}' if source else topic
+            for source, topic in sorted(publications, key=lambda each: (each[1], each[0]))]
+
+
+def unheard_lines(names: Sequence[str]) -> List[str]:
+    """Return lines below the table: what nodes published in training, and nobody subscribed to."""
+    return first_lines([f'{name}: not watched, nobody subscribed in training' for name in names],
+                       _MOST_LINES, ' topics that nobody subscribed to')
+
+
+def of_some_robots(robots: Mapping[str, Set[str]]) -> Dict[str, Any]:
+    """Return the robots of a training, and what only some of them have, by component.
+
+    Args:
+        robots: components by robot, as TrainedModel.robots has them.
+    """
+    everywhere = set.intersection(*robots.values()) if robots else set()
+    optional = sorted(set().union(*robots.values()) - everywhere)
+    return {'robots': sorted(robots),
+            'optional': {component: sorted(robot for robot, has in robots.items()
+                                           if component in has) for component in optional}}
+
+
+def optional_lines(summary: Mapping[str, Any]) -> List[str]:
+    """Return lines below the table: what only some robots have, and nobody misses on others."""
+    return first_lines(
+        [f'{component}: optional, only '
+         f'{first_of([robot or "(no name)" for robot in on], _MOST_ROBOTS)} of '
+         f'{len(summary["robots"])} robots had it in training'
+         for component, on in summary['optional'].items()],
+        _MOST_LINES, ' that only some robots had')
 
 
 def _death(each: Dict[str, Any], fewest_gaps: int) -> str:

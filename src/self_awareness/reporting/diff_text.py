@@ -7,7 +7,7 @@ from typing import Any, Dict, List
 from self_awareness.comparison.changes import (DELAY, ENDED, GAP, GONE, NEW, RATE, Change,
                                                Comparison)
 from self_awareness.comparison.sides import Kind, Side
-from self_awareness.reporting.number_text import rounded
+from self_awareness.reporting.text import first_of, rounded
 
 _MOST_UNSURE = 10
 
@@ -66,10 +66,8 @@ def notes(comparison: Comparison) -> List[str]:
     """Return what was not compared, and why."""
     found = []
     if comparison.unsure:
-        shown = ', '.join(name(kind) for kind in comparison.unsure[:_MOST_UNSURE])
-        more = len(comparison.unsure) - _MOST_UNSURE
         found.append('on one side only, but too rare to say that it is not chance: '
-                     + shown + (f', and {more} more' if more > 0 else ''))
+                     + first_of([name(kind) for kind in comparison.unsure], _MOST_UNSURE, ', '))
     if comparison.compared_delays is None:
         found.append('delays between event types were not compared: no model is calibrated, so '
                      'nobody knows which of them have to do with each other; calibrate one')

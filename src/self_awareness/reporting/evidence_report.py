@@ -9,9 +9,8 @@ from self_awareness import HOURS_OF_ROBOTS, EvidenceModel, TrainedModel
 from self_awareness.calibration import confidence, heads_and_tails
 from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, Injections, JudgedRun
-from self_awareness.reporting import coverage_text, relations_text, unheard_text
-from self_awareness.reporting.number_text import rounded
-from self_awareness.reporting.text_table import aligned
+from self_awareness.reporting import coverage_text, relations_text
+from self_awareness.reporting.text import aligned, first_lines, rounded
 from self_awareness.stamps import SECOND_NS
 
 _DIFFERENT = 0.8
@@ -47,7 +46,7 @@ def print_verdict(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> 
 def print_coverage(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> None:
     """Print a table of all components."""
     for line in (coverage_text.lines(coverage, trained.fewest_gaps)
-                 + unheard_text.lines(unheard_text.summarise(trained.unheard))):
+                 + coverage_text.unheard_lines(coverage_text.unheard(trained.unheard))):
         print(line)
 
 
@@ -71,11 +70,10 @@ def print_budgets(by_budget: Mapping[float, Sequence[Dict[str, Any]]]) -> None:
     print(f'--budget: deaths found with {names} false alarms an hour allowed; all others, and '
           'late answers, equally soon')
     rows = [(component, *(f'{rounded(time, 3)} s' for time in times))
-            for component, times in differ[:_MOST_ROWS]]
-    for line in aligned([('component', *(f'{budget:g}' for budget in budgets)), *rows]):
+            for component, times in differ]
+    head = ('component', *(f'{budget:g}' for budget in budgets))
+    for line in first_lines(aligned([head, *rows]), _MOST_ROWS + 1):
         print(line)
-    if len(differ) > _MOST_ROWS:
-        print(f'and {len(differ) - _MOST_ROWS} more')
 
 
 def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:

@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Sequence
 from self_awareness import KeptIncident
 from self_awareness.recovery import words
 from self_awareness.recovery.history import Action
-from self_awareness.reporting.text_table import aligned
+from self_awareness.reporting.text import aligned, first_of
 from self_awareness.stamps import SECOND_NS, moment, to_the_second
 
 _MOST_NAMED = 3
@@ -114,9 +114,7 @@ def _lasted(incident: KeptIncident) -> str:
 
 
 def _besides(incident: KeptIncident) -> str:
-    names = [name for name in named(incident) if name != incident.component]
-    more = len(names) - _MOST_NAMED
-    return ', '.join(names[:_MOST_NAMED]) + (f' and {more} more' if more > 0 else '')
+    return first_of([name for name in named(incident) if name != incident.component], _MOST_NAMED)
 
 
 def _ways_on(incident: KeptIncident) -> List[Sequence[str]]:

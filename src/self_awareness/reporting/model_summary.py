@@ -7,9 +7,9 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from self_awareness import (USUAL_SHARES, Calibration, EvidenceModel, PaperCalibration,
                             Recording, TrainedModel, Tuning, encoding_file)
-from self_awareness.reporting import coverage_text, relations_text, robots_text, unheard_text
-from self_awareness.reporting.version_summary import summarise_version
 from self_awareness.judging import EVIDENCE, PAPER
+from self_awareness.reporting import coverage_text, relations_text
+from self_awareness.reporting.file_summary import summarise_version
 from self_awareness.stamps import SECOND_NS
 
 
@@ -53,6 +53,24 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
     }
 
 
+def tuning_lines(tuning: Tuning) -> List[str]:
+    """Return a line for each number: name, value, unit, range, and what it means.
+
+    A number that is not the default is marked, with the default.
+    """
+    text = []
+    for number in Tuning.numbers():
+        value = tuning.get(number.name)
+        changed = '' if value == number.default else f' (default: {number.default:g})'
+        unit = f' {number.unit}' if number.unit else ''
+        span = f'{number.least:g} to {number.most:g}'
+        text.append(f'{number.name:<26} {f"{value:g}{unit}":<18} {span:<16} '
+                    f'{number.meaning}{changed}')
+    for channel in tuning.without:
+        text.append(f'without the channel {channel}')
+    return text
+
+
 def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
     """Return what the evidence detector watches; tracks are counted by channel."""
     tracks = evidence.tracks
@@ -62,8 +80,8 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
                        if model.gaps(index) < model.fewest_gaps],
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
         'without': model.tuning.without,
-        'unheard': unheard_text.summarise(model.unheard),
-        **robots_text.summarise(model.robots),
+        'unheard': coverage_text.unheard(model.unheard),
+        **coverage_text.of_some_robots(model.robots),
         'left_out': sorted(model.left_out),
         'calibration': None,
     }

@@ -4,57 +4,38 @@ matplotlib takes long to import: only a program that draws imports it.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from self_awareness import Roc, RocPoint
 from self_awareness.output_files import replacing
-from self_awareness.reporting.number_text import percent
+from self_awareness.reporting.text import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from self_awareness.reporting.report.timeline import Timeline
 
 _DPI = 120
-_MOST_STRETCHES = 1500
 _SHOWN_LIMITS = 4.0
 _NAMED = 3
 _LEFT_EDGE = 0.05
 _RED, _GREY = '#c62f35', '#7d8694'
 
 
-@dataclass(frozen=True)
-class NamedAlarm:
-    """A stretch in which the alarm stood [s], and whom it names first; empty: nobody."""
-
-    start: float
-    end: float
-    suspect: str
-
-
-@dataclass(frozen=True)
-class ScorePlot:
+class ScorePlot(NamedTuple):
     """What is drawn of one recording; times in seconds from its first message.
 
     Args:
         title: above the plot.
-        times: of the windows' starts.
-        scores: one a window, NaN where it had no events.
-        abnormal: one a window: whether it was.
-        threshold: s*; None: not calibrated.
-        settling: start and end of the stretches in which no alarm is raised.
-        alarms: that stood.
+        timeline: the score.
+        alarms: stretches in which the alarm stood, and whom it names first; empty: nobody.
     """
 
     title: str
-    times: np.ndarray
-    scores: np.ndarray
-    abnormal: np.ndarray
-    threshold: Optional[float]
-    settling: List[Tuple[float, float]]
-    alarms: List[NamedAlarm]
+    timeline: Timeline
+    alarms: List[Tuple[float, float, str]]
 
 
 def save_scores(path: str, plots: Sequence[ScorePlot]) -> None:
@@ -128,23 +109,31 @@ def _draw_roc(axes: Axes, roc: Roc, colour: Optional[str], width: float,
 
 
 def _draw_scores(axes: Axes, plot: ScorePlot) -> None:
-    unit = abs(plot.threshold) if plot.threshold else 1.0
-    times, lowest, highest = _stretches(plot.times, plot.scores / unit)
-    limit = None if plot.threshold is None else plot.threshold / unit
+    shown, limit = plot.timeline, plot.timeline.limit
+    times, lowest, highest = shown.edges[:-1], shown.lowest, shown.highest
     if limit is not None and limit < 0:
         lowest, highest = (np.maximum(each, -_SHOWN_LIMITS) for each in (lowest, highest))
-    _shade(axes, plot.settling, 'settling: no alarm yet', color='0.9')
-    _shade(axes, [(each.start, each.end) for each in plot.alarms], 'alarm',
-           color='tab:red', alpha=0.22)
+    _shade(axes, shown.settling, 'settling: no alarm yet', color='0.9')
+    _shade(axes, [(start, end) for start, end, _ in plot.alarms], 'alarm', color='tab:red',
+           alpha=0.22)
     axes.fill_between(times, lowest, highest, color=_GREY, alpha=0.3, linewidth=0)
     axes.plot(times, lowest, color=_GREY, linewidth=0.7,
-              label='score' if len(times) == len(plot.times) else 'lowest score of each stretch')
-    _mark(axes, plot, limit, unit)
+              label='score' if (np.nan_to_num(lowest) == np.nan_to_num(highest)).all()
+              else 'lowest score of each stretch')
+    if shown.silent.any() and limit is not None:
+        axes.plot(times[shown.silent], np.zeros(shown.silent.sum()), '|', color='tab:purple',
+                  markersize=8, label='no event in the window')
+    if shown.abnormal.any():
+        axes.plot(times[shown.abnormal], np.nan_to_num(lowest[shown.abnormal]), '.', color=_RED,
+                  markersize=3, label='abnormal window')
     axes.set(title=_plain(plot.title), xlabel='time from the first message [s]',
              ylabel='score' if limit is None else
              'of the limit\n(beyond 100 % is abnormal)' if limit < 0 else
              f'score in units of the limit\n(below {limit:g} is abnormal)')
     axes.margins(x=0.005)
+    if limit is not None:
+        axes.axhline(limit, color=_RED, linestyle='--', linewidth=1.3,
+                     label='limit' if limit < 0 else f'threshold s* = {limit * shown.unit:.4g}')
     if limit is not None and limit < 0:
         low = float(np.nanmin(lowest)) if np.isfinite(lowest).any() else limit
         axes.set_ylim(1.05 * min(1.5 * limit, low), 0.05)
@@ -156,38 +145,17 @@ def _draw_scores(axes: Axes, plot: ScorePlot) -> None:
     axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0), frameon=False)
 
 
-def _mark(axes: Axes, plot: ScorePlot, limit: Optional[float], unit: float) -> None:
-    silent = np.isnan(plot.scores)
-    if silent.any() and plot.threshold is not None:
-        axes.plot(plot.times[silent], np.zeros(silent.sum()), '|', color='tab:purple',
-                  markersize=8, label='no event in the window')
-    if plot.abnormal.any():
-        low = np.nan_to_num(plot.scores[plot.abnormal]) / unit
-        axes.plot(plot.times[plot.abnormal], np.maximum(low, -_SHOWN_LIMITS), '.', color=_RED,
-                  markersize=3, label='abnormal window')
-    if limit is not None:
-        axes.axhline(limit, color=_RED, linestyle='--', linewidth=1.3,
-                     label='limit' if limit < 0 else f'threshold s* = {plot.threshold:.4g}')
-
-
-def _name(axes: Axes, alarms: Sequence[NamedAlarm]) -> None:
+def _name(axes: Axes, alarms: Sequence[Tuple[float, float, str]]) -> None:
     """Write whom the alarms name, where there is room for it."""
     left, right = axes.get_xlim()
     room = left
-    for alarm in alarms:
-        if alarm.suspect and alarm.start >= room:
-            axes.annotate(alarm.suspect, (alarm.start, 1), xytext=(3, -3),
-                          xycoords=('data', 'axes fraction'), textcoords='offset points',
-                          color=_RED, fontsize='small', va='top', clip_on=True)
+    for start, _, suspect in alarms:
+        if suspect and start >= room:
+            axes.annotate(suspect, (start, 1), xytext=(3, -3), xycoords=('data', 'axes fraction'),
+                          textcoords='offset points', color=_RED, fontsize='small', va='top',
+                          clip_on=True)
             # About as wide as a character is in this figure.
-            room = alarm.start + (right - left) * 0.009 * (len(alarm.suspect) + 1)
-
-
-def _stretches(times: np.ndarray, scores: np.ndarray) -> Tuple[np.ndarray, np.ndarray,
-                                                               np.ndarray]:
-    """Return begin, lowest and highest score of as many stretches as can be seen."""
-    begins = np.arange(0, len(times), max(1, -(-len(times) // _MOST_STRETCHES)))
-    return (times[begins], np.fmin.reduceat(scores, begins), np.fmax.reduceat(scores, begins))
+            room = start + (right - left) * 0.009 * (len(suspect) + 1)
 
 
 def _shade(axes: Axes, stretches: Sequence[Tuple[float, float]], label: str,

@@ -9,8 +9,7 @@ import numpy as np
 
 from self_awareness import EventType, TrainedModel
 from self_awareness.recordings import RecordingEvents
-from self_awareness.reporting.number_text import rounded
-from self_awareness.reporting.text_table import aligned
+from self_awareness.reporting.text import aligned, rounded
 from self_awareness.stamps import SECOND_NS
 
 _DIGITS = 3

@@ -4,26 +4,22 @@ from __future__ import annotations
 import os
 from typing import Any, Dict, List
 
-from self_awareness import BagError, summarise_bag
-from self_awareness.parts import Named
+from self_awareness import summarise_bag
+from self_awareness.parts import BagPart, Named
 from self_awareness.stamps import SECOND_NS, moment
 
 
 def summarise(named: Named) -> Dict[str, Any]:
     """Return the recordings as plain values; those that turn out to be bad are added to these."""
-    found = []
-    for part in named.parts:
-        try:
-            summary = summarise_bag(part.files, part.recording)
-        except BagError as error:
-            named.bad.append(str(error))
-            continue
-        start, end = part.span(summary.start, summary.end)
-        found.append({
-            'recording': str(part), 'start_ns': start, 'duration': (end - start) / SECOND_NS,
+    return {'recordings': list(named.each(_recording)), 'skipped': named.bad}
+
+
+def _recording(part: BagPart) -> Dict[str, Any]:
+    summary = summarise_bag(part.files, part.recording)
+    start, end = part.span(summary.start, summary.end)
+    return {'recording': str(part), 'start_ns': start, 'duration': (end - start) / SECOND_NS,
             'files': [{'file': path, 'begin_s': (begin - summary.start) / SECOND_NS}
-                      for path, begin in summary.files]})
-    return {'recordings': found, 'skipped': named.bad}
+                      for path, begin in summary.files]}
 
 
 def lines(summary: Dict[str, Any]) -> List[str]:

@@ -5,6 +5,7 @@ import math
 from typing import Any, Dict, List
 
 from self_awareness import Coverage, EvidenceModel, TrainedModel
+from self_awareness.reporting.text import first_lines
 
 RELATIONS = ('pairs', 'deadlines')
 """The channels that look at two event types."""
@@ -54,14 +55,9 @@ def reasons(relation: Dict[str, Any]) -> str:
 
 def lines(found: List[Dict[str, Any]]) -> List[str]:
     """Return lines for people: what is watched and why, and what more starts would add."""
-    text = []
-    watched = [relation for relation in found if relation['judged']]
-    for relation in watched[:_MOST_LINES]:
-        text.append(f'{relation["channel"]}: {relation["from"]} -> {relation["to"]}: '
-                    f'{reasons(relation)}')
-    if len(watched) > _MOST_LINES:
-        text.append(f'and {len(watched) - _MOST_LINES} more (info --json lists all)')
-    return text + to_record(found)
+    watched = [f'{relation["channel"]}: {relation["from"]} -> {relation["to"]}: '
+               f'{reasons(relation)}' for relation in found if relation['judged']]
+    return first_lines(watched, _MOST_LINES, ' (info --json lists all)') + to_record(found)
 
 
 def to_record(found: List[Dict[str, Any]]) -> List[str]:

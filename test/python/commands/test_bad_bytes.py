@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from conftest import robot, write_bag
 
-from self_awareness import ModelFileError, TrainedModel, encoding_file, yaml_file
+from self_awareness import TrainedModel, encoding_file, yaml_file
 from self_awareness.commands import info, score, train
 from self_awareness.training.robot_graph import RobotGraph
 
@@ -144,17 +144,3 @@ def test_a_changed_encoding_file_is_read_or_refused(tmp_path: Path) -> None:
             assert str(path) in str(error)
             refused += 1
     assert 0 < refused < 150
-
-
-def test_a_changed_model_is_loaded_or_refused(model_file: str, tmp_path: Path) -> None:
-    whole = Path(model_file).read_bytes()
-    draw = random.Random(2)
-    path = tmp_path / 'bad.model'
-    for _ in range(200):
-        data = bytearray(whole)
-        data[draw.randrange(4100, len(data))] ^= 1 << draw.randrange(8)
-        path.write_bytes(data)
-        try:
-            TrainedModel.load(str(path))
-        except ModelFileError as error:
-            assert str(path) in str(error) and 'memory' not in str(error)

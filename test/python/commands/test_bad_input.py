@@ -2,73 +2,22 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from pathlib import Path
-from typing import Callable, Dict, List
+from typing import List
 
 import pytest
-import rosbag
-from conftest import robot
+from conftest import error_of, robot
 
 from self_awareness.commands import calibrate, info, merge, score, train
 
-SCRIPTS = Path(__file__).resolve().parents[3] / 'scripts'
 PROGRAMS = {'train': train, 'calibrate': calibrate, 'score': score, 'info': info,
             'merge': merge}
-
-
-@pytest.fixture
-def bad_bags(make_bag: Callable[..., str], tmp_path: Path) -> Dict[str, str]:
-    """Files that cannot be used as a bag, by what is wrong with them."""
-    whole = Path(make_bag('whole.bag', robot(10.0, 2.0))).read_bytes()
-    (tmp_path / 'truncated.bag').write_bytes(whole[:len(whole) // 2])
-    (tmp_path / 'foreign.bag').write_text('something else\n' * 100)
-    (tmp_path / 'nothing.bag').write_bytes(b'')
-    (tmp_path / 'folder.bag').mkdir()
-    with rosbag.Bag(str(tmp_path / 'empty.bag'), 'w'):
-        pass
-    unindexed = rosbag.Bag(str(tmp_path / 'unindexed.bag'), 'w')
-    unindexed._file.close()  # as after a power cut
-    return {name: str(tmp_path / f'{name}.bag') for name in (
-        'truncated', 'foreign', 'nothing', 'folder', 'empty', 'unindexed', 'missing')}
-
-
-def error_of(program: str, arguments: List[str], capsys: pytest.CaptureFixture) -> str:
-    """Run a program that must fail, and return the one line it says."""
-    assert PROGRAMS[program].main(arguments) == 1
-    captured = capsys.readouterr()
-    assert captured.err.count('\n') == 1, captured.err
-    assert captured.err.startswith(f'{program}: error: ')
-    return captured.err
-
-
-@pytest.mark.parametrize('kind, told', [
-    ('truncated', 'rosbag reindex'), ('foreign', 'not a bag'), ('nothing', 'not a bag'),
-    ('folder', 'without bags'), ('empty', 'no messages'), ('unindexed', 'rosbag reindex'),
-    ('missing', 'no such file')])
-def test_a_bad_bag_is_named_with_the_mend(bad_bags: Dict[str, str], model_file: str,
-                                          robot_bags, kind: str, told: str, tmp_path: Path,
-                                          capsys) -> None:
-    before = sorted(os.listdir(tmp_path))
-    bag, output = bad_bags[kind], str(tmp_path / 'out')
-    for program, arguments in (
-            ('train', [robot_bags[0], bag, '-o', output]),
-            ('calibrate', ['--model', model_file, '--normal', robot_bags[1], bag, '--inject',
-                           'starve', '-o', output])):
-        error = error_of(program, arguments, capsys)
-        assert bag in error and told in error
-    assert sorted(os.listdir(tmp_path)) == before
-    error = error_of('score', [bag, robot_bags[1], '--model', model_file, '--csv', output], capsys)
-    assert bag in error and told in error
-    rows = Path(output).read_text().splitlines()[1:]  # of what is behind it
-    assert rows and all(row.startswith(robot_bags[1]) for row in rows)
 
 
 def test_a_bag_with_one_event_has_no_delay(make_bag, robot_bags, tmp_path: Path, capsys) -> None:
     bag = make_bag('one.bag', [(1.0, '/a', '/b')])
     for bags in ([bag], [robot_bags[0], bag]):
-        error = error_of('train', [*bags, '-o', str(tmp_path / 'm')], capsys)
+        error = error_of(train, [*bags, '-o', str(tmp_path / 'm')], capsys)
         assert bag in error and 'one event' in error
     assert not (tmp_path / 'm').exists()
 
@@ -76,17 +25,17 @@ def test_a_bag_with_one_event_has_no_delay(make_bag, robot_bags, tmp_path: Path,
 def test_a_bag_without_events_is_named(make_bag, model_file: str, tmp_path: Path, capsys) -> None:
     player = '/play_1795206536731453261'
     bag = make_bag('replay.bag', [(t, player, topic) for t, _, topic in robot(1.0, 2.0)])
-    for program, arguments in (('train', [bag, '-o', str(tmp_path / 'm')]),
-                               ('score', [bag, '--model', model_file])):
+    for program, arguments in ((train, [bag, '-o', str(tmp_path / 'm')]),
+                               (score, [bag, '--model', model_file])):
         error = error_of(program, arguments, capsys)
         assert bag in error and 'rosbag play' in error and 'source: none' in error
-    assert 'range' in error_of('train', [bag, '--start', '99', '-o', str(tmp_path / 'm')], capsys)
+    assert 'range' in error_of(train, [bag, '--start', '99', '-o', str(tmp_path / 'm')], capsys)
 
 
 def test_a_recording_given_twice_is_refused(robot_bags, tmp_path: Path, capsys) -> None:
     os.symlink(robot_bags[0], tmp_path / 'again.bag')
-    error = error_of('train', [robot_bags[0], str(tmp_path / 'again.bag'), '-o',
-                               str(tmp_path / 'm')], capsys)
+    error = error_of(train, [robot_bags[0], str(tmp_path / 'again.bag'), '-o',
+                             str(tmp_path / 'm')], capsys)
     assert 'again.bag' in error and robot_bags[0] in error
 
 
@@ -97,21 +46,21 @@ def test_bags_with_and_without_senders_do_not_mix(make_bag, robot_bags, tmp_path
     encoding.write_text('source: callerid\n')
     output = ['-o', str(tmp_path / 'm')]
     for arguments in ([robot_bags[0], nameless], [nameless, '--encoding', str(encoding)]):
-        error = error_of('train', arguments + output, capsys)
+        error = error_of(train, arguments + output, capsys)
         assert nameless in error and 'source: none' in error
 
 
 def test_a_model_with_another_encoding_is_told(make_bag, model_file: str, robot_bags,
                                                tmp_path: Path, capsys) -> None:
     nameless = make_bag('nameless.bag', robot(10.0), sources=False)
-    error = error_of('score', [nameless, '--model', model_file], capsys)
+    error = error_of(score, [nameless, '--model', model_file], capsys)
     assert nameless in error and 'another encoding' in error and 'source: none' in error
     other_robot = make_bag('other.bag', [(t, '/x', '/y') for t, _, _ in robot(10.0)])
     for bag in (nameless, other_robot):
         by_detector: List[List[str]] = [[], ['--detector', 'paper', '--cutoff', 'fpr=0.1']]
         for options in by_detector:
-            error = error_of('calibrate', ['--model', model_file, '--normal', bag, *options, '-o',
-                                           str(tmp_path / 'm')], capsys)
+            error = error_of(calibrate, ['--model', model_file, '--normal', bag, *options, '-o',
+                                         str(tmp_path / 'm')], capsys)
             assert bag in error and 'another encoding' in error
 
 
@@ -121,10 +70,10 @@ def test_a_type_field_with_endless_values_is_refused(make_bag, tmp_path: Path, c
     encoding = tmp_path / 'e.yaml'
     arguments = [bag, '-o', str(tmp_path / 'm'), '--encoding', str(encoding)]
     encoding.write_text('type_fields: {std_msgs/Header: frame_id}\n')
-    error = error_of('train', arguments, capsys)
+    error = error_of(train, arguments, capsys)
     assert bag in error and 'std_msgs/Header: frame_id' in error and '1000' in error
     encoding.write_text('type_fields: {std_msgs/Header: level}\n')
-    error = error_of('train', arguments, capsys)
+    error = error_of(train, arguments, capsys)
     assert bag in error and 'std_msgs/Header' in error and 'level' in error
     assert not (tmp_path / 'm').exists()
 
@@ -140,38 +89,11 @@ def test_a_bad_model_is_named(contents: str, model_file: str, robot_bags, tmp_pa
     elif contents == 'cut':
         path.write_bytes(Path(model_file).read_bytes()[:-100])
     for program, arguments in (
-            ('info', [str(path)]), ('score', [robot_bags[1], '--model', str(path)]),
-            ('calibrate', ['--model', str(path), '--normal', robot_bags[1], '-o',
-                           str(tmp_path / 'm')])):
+            (info, [str(path)]), (score, [robot_bags[1], '--model', str(path)]),
+            (calibrate, ['--model', str(path), '--normal', robot_bags[1], '-o',
+                         str(tmp_path / 'm')])):
         assert str(path) in error_of(program, arguments, capsys)
     assert not (tmp_path / 'm').exists()
-
-
-def test_no_input_and_no_recording_is_overwritten(robot_bags, model_file: str, tmp_path: Path,
-                                                  capsys) -> None:
-    contents = [Path(path).read_bytes() for path in (*robot_bags, model_file)]
-    for program, arguments in (
-            ('train', [robot_bags[0], '-o', robot_bags[0]]),
-            ('train', [robot_bags[0], '-o', robot_bags[1]]),  # the order was mixed up
-            ('calibrate', ['--model', model_file, '--normal', robot_bags[1], '-o',
-                           robot_bags[1]]),
-            ('calibrate', ['--model', model_file, '--normal', robot_bags[1], '-o',
-                           str(tmp_path / 'm'), '--csv', str(tmp_path / 'm')]),
-            ('score', [robot_bags[1], '--model', model_file, '--csv', robot_bags[1]]),
-            ('score', [robot_bags[1], '--model', model_file, '--csv', model_file])):
-        error_of(program, arguments, capsys)
-    assert [Path(path).read_bytes() for path in (*robot_bags, model_file)] == contents
-
-
-def test_a_result_without_a_folder_is_told_before_the_work(robot_bags, model_file: str,
-                                                           tmp_path: Path, capsys) -> None:
-    nowhere = str(tmp_path / 'no' / 'where')
-    assert nowhere in error_of('train', [robot_bags[0], '-o', nowhere], capsys)
-    for option in ('--csv', '--plot'):
-        name = nowhere + '.png'
-        assert name in error_of('score', [robot_bags[1], '--model', model_file, option, name],
-                                capsys)
-    assert str(tmp_path) in error_of('train', [robot_bags[0], '-o', str(tmp_path)], capsys)
 
 
 @pytest.mark.parametrize('value', ['nan', '0', '-1', 'inf', 'soon', '1e9', ''])
@@ -210,19 +132,7 @@ def test_a_range_or_horizon_that_does_not_fit_is_told(robot_bags, tmp_path: Path
     output = ['-o', str(tmp_path / 'm')]
     for options, told in ((['--start', '5', '--end', '4'], 'start < end'),
                           (['--horizon', '0.015'], 'multiple')):
-        assert told in error_of('train', [robot_bags[0], *options, *output], capsys)
-
-
-@pytest.mark.parametrize('name', sorted(PROGRAMS))
-def test_the_script_runs_and_explains_itself(name: str) -> None:
-    script = SCRIPTS / name
-    assert os.access(script, os.X_OK)
-    help_text = subprocess.run([sys.executable, str(script), '--help'], stdout=subprocess.PIPE,
-                               text=True, check=True).stdout
-    assert help_text.startswith(f'usage: {name} ')
-    wrong = subprocess.run([sys.executable, str(script), '--no-such-option'],
-                           stderr=subprocess.PIPE, text=True)
-    assert wrong.returncode == 2 and 'usage' in wrong.stderr
+        assert told in error_of(train, [robot_bags[0], *options, *output], capsys)
 
 
 def test_ctrl_c_ends_it(monkeypatch, model_file: str, capsys) -> None:

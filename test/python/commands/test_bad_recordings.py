@@ -21,6 +21,8 @@ PROGRAMS: Dict[str, Callable[[List[str]], int]] = {
 BAD = {'active.bag.active': 'is still being written, or its recorder was killed; in that case '
                             'mend it with: rosbag reindex',
        'cut.bag': 'rosbag reindex',
+       'foreign.bag': 'not a bag',
+       'nothing.bag': 'not a bag',
        'empty.bag': 'the bag is empty: it holds no messages; leave it out',
        'other.mcap': 'not a bag of ROS 1: MCAP',
        'old.orig.bag': 'before rosbag reindex; remove it',
@@ -40,6 +42,8 @@ def day(tmp_path: Path) -> Path:
     (made / 'cut.bag').write_bytes(whole.read_bytes()[:9000])
     with rosbag.Bag(str(made / 'empty.bag'), 'w'):
         pass
+    (made / 'foreign.bag').write_text('something else\n' * 100)
+    (made / 'nothing.bag').touch()
     (made / 'other.mcap').write_bytes(b'\x89MCAP0\r\n')
     write_bag(made / 'old.bag', robot(50000.0, 100.0))
     (made / 'old.orig.bag').write_bytes(whole.read_bytes()[:9000])

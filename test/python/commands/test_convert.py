@@ -5,11 +5,11 @@ import json
 import os
 import shutil
 from pathlib import Path
-from typing import Callable, List, Tuple
+from typing import Callable, Tuple
 
 import pytest
 import rosbag
-from conftest import learned, robot
+from conftest import error_of, learned, robot
 
 from self_awareness import (EncodingRules, EventLogWriter, TrainedModel, read_events,
                             recordings_in_event_log, summarise_bag)
@@ -18,13 +18,6 @@ from self_awareness.parts import BagPart, expand
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 Bags = Tuple[str, str]
-
-
-def error_of(main: Callable[[List[str]], int], arguments: List[str],
-             capsys: pytest.CaptureFixture) -> str:
-    capsys.readouterr()
-    assert main(arguments) == 1
-    return capsys.readouterr().err
 
 
 @pytest.fixture(scope='module')
@@ -68,23 +61,6 @@ def test_a_log_gives_the_same_model_limits_and_windows(long_bags: Bags, log: str
     assert len(results[0][3].splitlines()) > 1000
 
 
-def test_reports_results_and_comparisons_read_a_log(long_bags: Bags, log: str, evidence_model: str,
-                                                    tmp_path: Path, capsys) -> None:
-    said = []
-    for part in (long_bags[1], f'{log}#2'):
-        out = {end: str(tmp_path / f'out.{end}') for end in ('html', 'bag')}
-        assert score.main([part, '--model', evidence_model, '--report', out['html'],
-                           '--result-bag', out['bag']]) == 0
-        assert diff.main([evidence_model, part]) == 0
-        with rosbag.Bag(out['bag']) as results:
-            statuses = [str(message) for _, message, _ in results.read_messages(
-                topics=['/self_awareness/status'])]
-        said.append((statuses, capsys.readouterr().out.replace(part, '')))
-    assert said[0] == said[1] and len(said[0][0]) > 1000
-    assert diff.main([evidence_model, log]) == 0
-    assert f'{log}: 2 recordings, 240.0 s' in capsys.readouterr().out
-
-
 def test_all_recordings_of_a_log_are_trained_on(long_bags: Bags, log: str, tmp_path: Path,
                                                 capsys) -> None:
     models = [str(tmp_path / name) for name in ('bags', 'log')]
@@ -120,8 +96,8 @@ def test_the_encoding_of_the_log_is_that_of_the_model(long_bags: Bags, tmp_path:
     assert trained.encoding.exclude_topics == ['/charge'] and len(trained.event_types) == 2
     other = str(tmp_path / 'other.model')
     assert train.main([long_bags[0], '-o', other]) == 0
-    assert 'another encoding' in error_of(score.main, [log, '--model', other], capsys)
-    assert 'another encoding' in error_of(train.main, [log, '--add-to', other, '-o', other],
+    assert 'another encoding' in error_of(score, [log, '--model', other], capsys)
+    assert 'another encoding' in error_of(train, [log, '--add-to', other, '-o', other],
                                           capsys)
 
 
@@ -146,6 +122,11 @@ def test_a_day_of_the_simulated_robot_stays_small(tmp_path: Path) -> None:
     assert os.path.getsize(log) * (86400 / 600) < 80e6
 
 
+def test_a_log_is_compared_with_a_model(log: str, evidence_model: str, capsys) -> None:
+    assert diff.main([evidence_model, log]) == 0
+    assert f'{log}: 2 recordings, 240.0 s' in capsys.readouterr().out
+
+
 def test_info_says_what_is_in_a_log(log: str, capsys) -> None:
     assert info.main([log]) == 0
     said = capsys.readouterr().out
@@ -157,7 +138,7 @@ def test_info_says_what_is_in_a_log(log: str, capsys) -> None:
     found = json.loads(capsys.readouterr().out)
     assert [recording['robot_start_ns'] for recording in found['recordings']] == [None, None]
     assert found['recordings'][0]['encoding']['source'] == 'callerid'
-    assert 'is an event log' in error_of(info.main, [log, '--pair', '/laser', '/slam'], capsys)
+    assert 'is an event log' in error_of(info, [log, '--pair', '/laser', '/slam'], capsys)
 
 
 def test_parts_name_the_recording(log: str) -> None:
@@ -169,16 +150,22 @@ def test_parts_name_the_recording(log: str) -> None:
             expand([BagPart.parse(text)])
 
 
+def test_an_event_log_is_not_converted_again(log: str, tmp_path: Path, capsys) -> None:
+    assert 'is an event log already' in error_of(
+        convert, [log, '-o', str(tmp_path / 'again.bag')], capsys)
+    assert os.listdir(tmp_path) == []
+
+
 def test_a_number_is_for_event_logs_only(robot_bags: Bags, tmp_path: Path, capsys) -> None:
-    error = error_of(train.main, [f'{robot_bags[0]}#1', '-o', str(tmp_path / 'm')], capsys)
+    error = error_of(train, [f'{robot_bags[0]}#1', '-o', str(tmp_path / 'm')], capsys)
     assert 'no event log' in error and robot_bags[0] in error
 
 
 def test_the_same_recording_as_bag_and_log_is_refused(long_bags: Bags, log: str, tmp_path: Path,
                                                       capsys) -> None:
-    error = error_of(train.main, [long_bags[1], log, '-o', str(tmp_path / 'm')], capsys)
+    error = error_of(train, [long_bags[1], log, '-o', str(tmp_path / 'm')], capsys)
     assert 'the same recording' in error
-    error = error_of(train.main, [log, f'{log}#2@3', '-o', str(tmp_path / 'm')], capsys)
+    error = error_of(train, [log, f'{log}#2@3', '-o', str(tmp_path / 'm')], capsys)
     assert f'{log}#2@3: the same recording as {log}#2' in error
 
 
@@ -187,11 +174,11 @@ def test_a_damaged_log_is_named(log: str, tmp_path: Path, capsys) -> None:
     cut = tmp_path / 'cut.bag'
     model = str(tmp_path / 'm')
     cut.write_bytes(whole[:len(whole) // 2])
-    assert f'rosbag reindex {str(cut)!r}' in error_of(train.main, [str(cut), '-o', model], capsys)
+    assert f'rosbag reindex {str(cut)!r}' in error_of(train, [str(cut), '-o', model], capsys)
     with rosbag.Bag(log) as source, rosbag.Bag(str(cut), 'w') as copy:
         for topic, message, stamp in source.read_messages(topics=['/event_log/events']):
             copy.write(topic, message, stamp)
-    assert f'{cut}: the event log has no start' in error_of(train.main, [str(cut), '-o', model],
+    assert f'{cut}: the event log has no start' in error_of(train, [str(cut), '-o', model],
                                                             capsys)
     assert not os.path.exists(model)
 
@@ -207,26 +194,3 @@ def test_a_log_that_was_not_closed_can_be_mended(robot_bags: Bags, tmp_path: Pat
     found = read_events(path, EncodingRules.defaults(), recording=0)
     assert found.stamps.tolist() == read_events(robot_bags[0],
                                                 EncodingRules.defaults()).stamps.tolist()
-
-
-def test_nothing_is_replaced_but_an_event_log(robot_bags: Bags, tmp_path: Path, capsys) -> None:
-    precious = tmp_path / 'precious.bag'
-    shutil.copy(robot_bags[1], precious)
-    before = precious.read_bytes()
-    error = error_of(convert.main, [robot_bags[0], '-o', str(precious)], capsys)
-    assert 'no event log that could be replaced' in error and precious.read_bytes() == before
-    assert 'is an input, too' in error_of(convert.main, [str(precious), '-o', str(precious)],
-                                          capsys)
-    log = str(tmp_path / 'log.bag')
-    assert convert.main([robot_bags[0], '-o', log]) == 0
-    assert convert.main([robot_bags[1], '-o', log]) == 0
-    assert summarise_bag(log, 0).bag == 'second.bag'
-    assert 'is an event log already' in error_of(
-        convert.main, [log, '-o', str(tmp_path / 'again.bag')], capsys)
-    # A bag that cannot be read leaves nothing behind.
-    broken = tmp_path / 'broken.bag'
-    broken.write_bytes(before[:5000])
-    error = error_of(convert.main, [robot_bags[0], str(broken), '-o', log], capsys)
-    assert str(broken) in error and summarise_bag(log, 0).bag == 'second.bag'
-    assert sorted(each.name for each in tmp_path.iterdir()) == ['broken.bag', 'log.bag',
-                                                                'precious.bag']

@@ -234,11 +234,3 @@ def test_bad_input_is_told(before: str, make_bag, tmp_path: Path, robot_bags, ca
     paper = str(tmp_path / 'paper.model')
     assert train.main([robot_bags[0], '--detector', 'paper', '-o', paper]) == 0
     assert paper in error_of(capsys, before, paper)
-
-
-def test_a_page_overwrites_no_input(before: str, tmp_path: Path, capsys) -> None:
-    model = tmp_path / 'model.html'
-    model.write_bytes(Path(before).read_bytes())
-    error_of(capsys, before, str(model), '--html', str(model))
-    assert model.read_bytes() == Path(before).read_bytes()
-    assert diff.main([before, before, '--html', str(tmp_path / 'd.pdf')]) == 2

@@ -7,14 +7,15 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, Dict
 
 import pytest
 from conftest import robot, train_tuned
 
 from self_awareness import EvidenceModel, TrainedModel, Tuning
-from self_awareness.commands import calibrate, convert, info, train
-from self_awareness.reporting.histogram_text import draw
+from self_awareness.commands import calibrate, info, train
+from self_awareness.reporting.delay_bins import drawn, paper_bins
 
 LASER, SLAM = '/laser /scan std_msgs/String', '/slam /map std_msgs/String'
 
@@ -114,15 +115,6 @@ def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path, caps
         ['predecessors', '1'], ['least_effect', '0.0025']]
 
 
-def test_an_event_log_has_no_tuning(robot_bags, tmp_path, capsys) -> None:
-    log = str(tmp_path / 'log')
-    assert convert.main([robot_bags[0], '-o', log]) == 0
-    capsys.readouterr()
-    assert info.main([log, '--tuning']) == 1
-    assert capsys.readouterr().err == (
-        f'info: error: --tuning: is for models, and {log} is an event log\n')
-
-
 def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None:
     output = str(tmp_path / 'm')
     bag = make_bag('rare.bag', sorted([*robot(10.0), (15.0, '/door', '/open')]))
@@ -188,8 +180,10 @@ def test_an_ambiguous_or_unknown_event_type_lists_the_candidates(model_file: str
 
 
 def test_a_wide_histogram_is_merged_into_rows_that_fit_a_screen() -> None:
-    counts = {3: 10, 500: 80, 999: 9, 10 ** 12: 1}
-    lines = draw(counts, 10_000_000, 0, 999, 20)
+    trained: Any = SimpleNamespace(
+        histogram=lambda *_: {3: 10, 500: 80, 999: 9, 10 ** 12: 1}, quantile=lambda *_: 999,
+        bin_size=10_000_000, horizon_bins=0)
+    lines = drawn(paper_bins(trained, 0, 1), 20)
     assert len(lines) == 21
     shown = [int(line.split()[3]) if '-' in line else int(line.split()[2]) for line in lines]
     assert sum(shown) == 100 and shown[0] == 10 and shown[-1] == 1 and max(shown) == 80
@@ -250,4 +244,6 @@ def test_rates_of_what_cannot_be_read_are_refused(model_file: str, robot_bags: A
     assert info.main([robot_bags[0], '--model', robot_bags[0]]) == 1
     assert 'holds no model' in capsys.readouterr().err
     assert info.main([robot_bags[0]]) == 1
-    assert f"info '{robot_bags[0]}' --model MODEL" in capsys.readouterr().err
+    error = capsys.readouterr().err
+    assert f"info '{robot_bags[0]}' --model MODEL" in error
+    assert f"score '{robot_bags[0]}' --model MODEL" in error and 'train' not in error

@@ -7,6 +7,7 @@ from typing import Any, Dict, List, Tuple
 import pytest
 
 from self_awareness.commands import only_one
+from self_awareness.recovery import node_calls
 from self_awareness.recovery.xml_rpc import NoAnswer
 
 COMMAND = ('--parameters', 'launched', 'nodelet/nodelet', 'manager', '__name:=watch')
@@ -58,7 +59,7 @@ class Master:
 
 
 def run(master: Master, monkeypatch: pytest.MonkeyPatch) -> int:
-    monkeypatch.setattr(only_one, 'ask', master.ask)
+    monkeypatch.setattr(node_calls, 'ask', master.ask)
     monkeypatch.setattr(os, 'execv', master.execv)
     monkeypatch.delenv('ROS_NAMESPACE', raising=False)
     return only_one.main(COMMAND)

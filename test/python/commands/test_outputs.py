@@ -9,11 +9,14 @@ import subprocess
 import sys
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Callable, Dict, Iterator, List, Tuple
+from typing import Any, Callable, Dict, Iterator, List, Tuple
 
 import pytest
+from conftest import error_of
 
 from self_awareness.commands import calibrate, convert, diff, merge, score, train
+from self_awareness.output_files import (EVENT_LOG, MODEL, PAGE, PICTURE, RESULT_BAG, TABLE,
+                                         VALUES, check_outputs)
 
 PROGRAMS = {'train': train, 'calibrate': calibrate, 'merge': merge, 'score': score,
             'convert': convert, 'diff': diff}
@@ -37,23 +40,16 @@ WRITERS = {
 }
 """Every way to write a file: the program and its arguments."""
 
+KINDS = dict(zip(WRITERS, (MODEL, MODEL, TABLE, PICTURE, MODEL, EVENT_LOG, TABLE, VALUES, PICTURE,
+                           PAGE, RESULT_BAG, PAGE)))
 
-def line_of(way: str, output: Path, files: Dict[str, str]) -> Tuple[str, List[str], Path]:
+
+def line_of(way: str, output: Path, files: Dict[str, str]) -> Tuple[Any, List[str], Path]:
     """Return the program, its arguments, and the file that it is to write."""
-    program, arguments = WRITERS[way]
+    name, arguments = WRITERS[way]
     filled = [each.format(output=output, **files) for each in arguments]
     written = next(each for each in filled if each.startswith(str(output)))
-    return program, filled, Path(written)
-
-
-def error_of(program: str, arguments: List[str], capsys: pytest.CaptureFixture) -> str:
-    """Run a program that must fail, and return the one line it says."""
-    capsys.readouterr()
-    assert PROGRAMS[program].main(arguments) == 1
-    error = capsys.readouterr().err
-    lines = [line for line in error.splitlines() if not line.startswith(f'{program}: warning: ')]
-    assert len(lines) == 1 and lines[0].startswith(f'{program}: error: '), error
-    return lines[0]
+    return PROGRAMS[name], filled, Path(written)
 
 
 @pytest.fixture(scope='module')
@@ -74,29 +70,32 @@ def written(files: Dict[str, str], tmp_path_factory: pytest.TempPathFactory) -> 
     contents = {}
     for index, way in enumerate(WRITERS):
         program, arguments, path = line_of(way, folder / str(index), files)
-        assert PROGRAMS[program].main(arguments) == 0
+        assert program.main(arguments) == 0
         contents[way] = path.read_bytes()
     return contents
 
 
 @pytest.mark.parametrize('way', WRITERS)
-def test_a_file_of_another_kind_is_not_replaced(way: str, files: Dict[str, str],
-                                                written: Dict[str, bytes], tmp_path: Path,
+def test_a_file_of_another_kind_is_not_replaced(way: str, files: Dict[str, str], tmp_path: Path,
                                                 capsys) -> None:
     program, arguments, path = line_of(way, tmp_path / 'out', files)
-    others = {other: content for other, content in written.items()
-              if other.split()[-1] != way.split()[-1]
-              and {other, way} - {'train', 'calibrate', 'merge'}
-              and {other, way} != {'score --report', 'diff --html'}
-              and {other, way} != {'score --plot', 'calibrate --roc'}}
-    for content in (Path(files['recording']).read_bytes(), b'notes, by hand\n', *others.values()):
+    for content in (Path(files['recording']).read_bytes(), b'notes, by hand\n'):
         path.write_bytes(content)
-        assert f'{path}: is there already, and no ' in error_of(program, arguments, capsys)
+        assert (f'{path}: is there already, and no {KINDS[way].name} that'
+                in error_of(program, arguments, capsys))
         assert path.read_bytes() == content
     assert os.listdir(tmp_path) == [path.name]
 
 
-@pytest.mark.parametrize('way', WRITERS)
+def test_what_is_written_is_of_its_kind_and_of_no_other(written: Dict[str, bytes],
+                                                        tmp_path: Path) -> None:
+    for way, content in written.items():
+        (tmp_path / 'f').write_bytes(content)
+        assert {kind for kind in KINDS.values()
+                if kind.is_one(str(tmp_path / 'f'))} == {KINDS[way]}, way
+
+
+@pytest.mark.parametrize('way', ['train', 'convert', 'score --csv', 'score --result-bag'])
 def test_a_file_of_the_same_kind_or_an_empty_one_is_replaced_through_links(
         way: str, files: Dict[str, str], written: Dict[str, bytes], tmp_path: Path) -> None:
     program, arguments, path = line_of(way, tmp_path / 'out', files)
@@ -105,24 +104,27 @@ def test_a_file_of_the_same_kind_or_an_empty_one_is_replaced_through_links(
     for before in (b'', written[way]):
         target.write_bytes(before)
         inode = target.stat().st_ino
-        assert PROGRAMS[program].main(arguments) == 0
+        assert program.main(arguments) == 0
         assert path.is_symlink() and target.stat().st_ino != inode
         assert target.stat().st_size > 0
     assert sorted(os.listdir(tmp_path)) == sorted([path.name, 'target'])
 
 
-@pytest.mark.parametrize('way', WRITERS)
-def test_what_may_not_be_written_is_not_replaced(way: str, files: Dict[str, str],
-                                                 written: Dict[str, bytes], tmp_path: Path,
-                                                 monkeypatch, capsys) -> None:
-    program, arguments, path = line_of(way, tmp_path / 'out', files)
-    path.write_bytes(written[way])
+def test_what_cannot_be_written_is_told_before_the_work(tmp_path: Path, monkeypatch) -> None:
+    def error(*paths: Path) -> str:
+        with pytest.raises(ValueError) as caught:
+            check_outputs([(str(path), TABLE) for path in paths], [])
+        return str(caught.value)
+
+    assert 'is a folder; name a file in it' in error(tmp_path)
+    assert f'there is no folder {tmp_path}/no; create it' in error(tmp_path / 'no' / 'where')
+    assert 'is named for another result, too' in error(tmp_path / 'a', tmp_path / '.' / 'a')
+    path = tmp_path / 'table'
+    path.write_text('a,b\n1,2\n')
     allowed = os.access  # root may write everything
     monkeypatch.setattr(os, 'access', lambda file, mode: allowed(file, mode) and not (
         mode == os.W_OK and os.fspath(file) == str(path)))
-    assert f'{path}: is there already, and may not be written' in error_of(
-        program, arguments, capsys)
-    assert path.read_bytes() == written[way]
+    assert error(path) == f'{path}: is there already, and may not be written'
 
 
 @pytest.mark.parametrize('way', WRITERS)
@@ -196,7 +198,7 @@ def test_a_file_that_cannot_grow_is_told_and_the_one_of_before_stays(
     path.write_bytes(written[way])
     with small_files(min(len(written[way]) // 2, 4096)):
         error = error_of(program, arguments, capsys)
-    assert error == f'{program}: error: {path}: cannot be written (File too large)'
+    assert error.endswith(f': error: {path}: cannot be written (File too large)')
     assert path.read_bytes() == written[way] and os.listdir(tmp_path) == [path.name]
 
 
@@ -219,7 +221,7 @@ def small_disk(tmp_path: Path) -> Iterator[Callable[[int], Path]]:
     subprocess.run(['umount', str(disk)], check=True)
 
 
-@pytest.mark.parametrize('way', WRITERS)
+@pytest.mark.parametrize('way', ['train', 'convert', 'score --csv', 'score --report'])
 def test_a_full_disk_is_told_with_its_room(
         way: str, files: Dict[str, str], written: Dict[str, bytes],
         small_disk: Callable[[int], Path], tmp_path: Path, capsys) -> None:
@@ -227,8 +229,8 @@ def test_a_full_disk_is_told_with_its_room(
     path.write_bytes(written[way])
     disk = small_disk(0)
     error = error_of(program, arguments, capsys)
-    assert error == (f'{program}: error: {path}: cannot be written (No space left on device, '
-                     'there is room for 0.0 MB)')
+    assert error.endswith(f': error: {path}: cannot be written (No space left on device, there is '
+                          'room for 0.0 MB)')
     assert path.read_bytes() == written[way]
     assert sorted(os.listdir(disk)) == sorted(['filler', path.name])
 

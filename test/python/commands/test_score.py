@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import csv
-import math
 import re
 import shutil
 from typing import Callable, Dict, List, Tuple
@@ -11,7 +10,6 @@ import numpy as np
 import pytest
 from conftest import robot
 
-from self_awareness import DetectorParameters, PaperModel, TrainedModel, read_events
 from self_awareness.commands import calibrate, score
 
 Bags = Tuple[str, str]
@@ -49,39 +47,6 @@ def test_the_alarm_and_its_suspect_are_printed(calibrated: str, dead_laser: str,
     assert interval[3].startswith('1970-01-01 00:50:1')  # 3012 s after the epoch
     assert float(interval[5]) < float(interval[6])
     assert re.search(r'^    1\. /laser /scan std_msgs/String: silent for ', out, re.MULTILINE)
-
-
-def test_normal_operation_is_no_alarm(calibrated: str, make_bag: Callable[..., str],
-                                      capsys) -> None:
-    assert score.main([make_bag('normal.bag', robot(7000.0)), '--model', calibrated, *PAPER]) == 0
-    assert ', alarms: 0' in capsys.readouterr().out
-
-
-def test_the_table_has_every_window_with_all_digits(calibrated: str, dead_laser: str,
-                                                    robot_bags: Bags, tmp_path, capsys) -> None:
-    table = tmp_path / 'w.csv'
-    assert score.main([dead_laser, robot_bags[1], '--model', calibrated, *PAPER, '--csv',
-                       str(table)]) == 0
-    assert table.read_text().splitlines()[0] \
-        == 'bag,window_start_ns,events,unknown,score,threshold,abnormal'
-    rows = rows_of(table)
-    trained = TrainedModel.load(calibrated)
-    expected = []
-    for bag in (dead_laser, robot_bags[1]):
-        events = read_events(bag, trained.encoding, trained.event_types)
-        verdicts = PaperModel(trained).judge(trained.window, trained.threshold,
-                                             DetectorParameters(), events.stamps, events.ids)
-        expected += [(bag, *window) for window in zip(
-            verdicts.start.tolist(), verdicts.events.tolist(), verdicts.unknown.tolist(),
-            verdicts.score.tolist(), verdicts.abnormal.tolist())]
-    found = [(row['bag'], int(row['window_start_ns']), int(row['events']), int(row['unknown']),
-              float(row['score']), row['abnormal'] == '1') for row in rows]
-    assert found == expected
-    assert {row['threshold'] for row in rows} == {repr(trained.threshold)}
-    # Eq. 5 literally, while the detector settles as well.
-    assert all((float(row['score']) < trained.threshold) == (row['abnormal'] == '1')
-               for row in rows)
-    assert rows[0]['abnormal'] == '1'
 
 
 def test_silence_is_abnormal_and_has_no_score(calibrated: str, make_bag: Callable[..., str],
@@ -124,17 +89,6 @@ def test_a_name_that_a_spreadsheet_would_compute_is_a_text(calibrated: str, robo
         assert calibrate.main(['--model', calibrated, '--normal', name, '--detector', 'paper',
                                '--cutoff', 'fpr=0.1', '-o', 'm', '--csv', 'c.csv']) == 0
         assert {row['bag'] for row in rows_of(tmp_path / 'c.csv')} == {f"'{name}"}
-
-
-def test_a_model_without_a_threshold_scores_and_says_so(model_file: str, dead_laser: str, tmp_path,
-                                                        capsys) -> None:
-    table, plot = tmp_path / 'w.csv', tmp_path / 'p.png'
-    assert score.main([dead_laser, '--model', model_file, *PAPER, '--csv', str(table), '--plot',
-                       str(plot)]) == 0
-    out = capsys.readouterr().out
-    assert 'not calibrated' in out and 'alarm' not in out
-    assert {(row['threshold'], row['abnormal']) for row in rows_of(table)} == {('', '0')}
-    assert all(math.isfinite(float(row['score'])) for row in rows_of(table))
 
 
 def test_the_options_of_the_alarm_are_heard(calibrated: str, dead_laser: str, capsys) -> None:

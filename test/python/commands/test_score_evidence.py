@@ -3,14 +3,15 @@ from __future__ import annotations
 
 import csv
 import re
+import shutil
 from typing import Callable, List, Tuple
 
 import numpy as np
 import pytest
 from conftest import Message, jittery_robot
 
-from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EvidenceModel, TrainedModel,
-                            judge_by_evidence, read_events)
+from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, EvidenceModel,
+                            TrainedModel, accepted_file, judge_by_evidence, read_events)
 from self_awareness.commands import score
 
 
@@ -92,6 +93,8 @@ def test_the_table_has_every_window_with_all_digits(
         evidence_model: str, make_bag: Callable[..., str], tmp_path, capsys) -> None:
     bag, table = make_bag('dead.bag', without_laser(3000.0)), tmp_path / 'w.csv'
     assert score.main([bag, '--model', evidence_model, '--csv', str(table)]) == 0
+    assert table.read_text().splitlines()[0] \
+        == 'bag,window_start_ns,events,unknown,score,threshold,abnormal'
     with open(table, newline='') as file:
         rows = list(csv.DictReader(file))
     trained = TrainedModel.load(evidence_model)
@@ -103,6 +106,17 @@ def test_the_table_has_every_window_with_all_digits(
     assert {float(row['threshold']) for row in rows} == {EVIDENCE_THRESHOLD}
     # A window of silence has a score, too: silence is evidence.
     assert np.isfinite(verdicts.score).all() and verdicts.score.min() < EVIDENCE_THRESHOLD
+
+
+def test_what_is_accepted_is_not_judged_and_is_said(
+        evidence_model: str, make_bag: Callable[..., str], tmp_path, capsys) -> None:
+    model = str(shutil.copy(evidence_model, tmp_path))
+    bag = make_bag('new.bag', sorted([*jittery_robot(3000.0, 30.0, 5), (3010.02, '/new', '/a')]))
+    accepted_file.keep([Acceptance('/new', '/a', 'stranger')], model)
+    assert score.main([bag, '--model', model]) == 0
+    out = capsys.readouterr().out
+    assert 'accepted, so not judged: /new on /a (stranger)' in out
+    assert ', alarms: 0, suspicions: 0\n' in out
 
 
 @pytest.mark.parametrize('option, raised', [('error', True), ('warn', False), ('ignore', False)])

@@ -6,7 +6,7 @@ import pickle
 import pytest
 
 from self_awareness import Tuning
-from self_awareness.reporting import tuning_text
+from self_awareness.reporting.model_summary import tuning_lines
 
 
 def test_every_number_says_what_it_is() -> None:
@@ -67,7 +67,7 @@ def test_the_text_has_a_line_for_each_number_and_marks_what_is_changed() -> None
     tuning.set('least_effect', 0.01)
     channel = Tuning.channels()[-1]
     tuning.leave_out(channel)
-    lines = tuning_text.lines(tuning)
+    lines = tuning_lines(tuning)
     assert [line.split()[0] for line in lines[:-1]] == [each.name for each in Tuning.numbers()]
     changed, = [line for line in lines if '(default: ' in line]
     assert changed.split()[:6] == ['least_effect', '0.01', 's', '0', 'to', '1000']

@@ -10,7 +10,7 @@ import rosbag
 
 from self_awareness.commands import simulate as simulate_program
 from self_awareness.training.robot_graph import RobotGraph
-from self_awareness_follow_me.effects import Loss
+from self_awareness_follow_me.effects import Setting
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import Scenario, load_scenario
 from self_awareness_follow_me.simulation import START_S, InducedFault, events, simulate
@@ -106,7 +106,7 @@ def test_stale_stamp(bag_with: Callable[[str], Bag], normal: Bag) -> None:
 
 def test_lost_messages_are_counted(bag_with: Callable[..., Bag], scenario: Scenario,
                                    normal: Bag) -> None:
-    robot = replace(scenario, faults=replace(scenario.faults, lossy=Loss((), 0.1)))
+    robot = replace(scenario, faults=replace(scenario.faults, lossy=Setting((), 'lost', 0.1)))
     bag = bag_with('lossy:motors', robot)
     numbers = [each.number for each in bag['/odom']]
     gaps = [b - a - 1 for a, b in zip(numbers, numbers[1:])]
@@ -119,7 +119,7 @@ def test_lost_messages_are_counted(bag_with: Callable[..., Bag], scenario: Scena
 
 def test_one_in_a_hundred_is_lost_by_default(scenario: Scenario) -> None:
     effect = effect_of(scenario, 'lossy:camera')
-    assert isinstance(effect, Loss) and effect.share == 0.01
+    assert effect == Setting(('camera',), 'lost', 0.01)
 
 
 def test_empty_messages(bag_with: Callable[[str], Bag], normal: Bag) -> None:

@@ -10,12 +10,11 @@ from typing import Any, Callable, Dict, List, Tuple
 
 import pytest
 import rosbag
-import yaml
 
-from self_awareness.yaml_section import SectionError
 from self_awareness_follow_me.component import Component, Message, Publish, Wake
 from self_awareness_follow_me.component_spec import ComponentSpec, Duration, Output, Task
-from self_awareness_follow_me.effects import Change, DoubleRate, HalfRate, Latency, Novelty
+from self_awareness_follow_me.effects import (Change, Novelty, OtherTasks, Setting, doubled,
+                                              halved)
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import Scenario, load_scenario
 from self_awareness_follow_me.simulation import START_S, Event, InducedFault, events, simulate
@@ -207,7 +206,8 @@ def _published(component: Component, requests: List[Any], now: int) -> List[Any]
 
 
 def test_component_is_right_again_after_the_fault() -> None:
-    component, switch = _changing(Latency(('it',), 0.06), Task((_output('out'),), upon='in'))
+    component, switch = _changing(Setting(('it',), 'delay', 0.06),
+                                  Task((_output('out'),), upon='in'))
     delays = []
     for now, on in enumerate((False, True, True, False)):
         switch['on'] = on
@@ -236,10 +236,10 @@ def test_what_a_fault_adds_ends_with_it_and_does_not_come_twice() -> None:
 
 
 @pytest.mark.parametrize('each, effect, copies', [
-    (1, HalfRate(('it',)), 3), (2, HalfRate(('it',)), 1), (1, DoubleRate(('it',)), 12),
-    (2, DoubleRate(('it',)), 6), (3, DoubleRate(('it',)), 4)])
+    (1, halved, 3), (2, halved, 1), (1, doubled, 12), (2, doubled, 6), (3, doubled, 4)])
 def test_rate_of_what_is_done_upon_a_topic(each: int, effect: Any, copies: int) -> None:
-    component, switch = _changing(effect, Task((_output('out'),), upon='in', each=each))
+    component, switch = _changing(OtherTasks(('it',), effect),
+                                  Task((_output('out'),), upon='in', each=each))
     switch['on'] = True
     said = [p for now in range(6)
             for p in _published(component, component.receive(now, Message('in', now)), now)]
@@ -251,28 +251,3 @@ def test_other_components_are_left_alone(scenario: Scenario) -> None:
     assert isinstance(effect, Change)
     changed = [spec.name for spec in scenario.components if effect.changed(spec) is not spec]
     assert changed == ['leg_detection', 'face_detection']
-
-
-@pytest.mark.parametrize('where, value, message', [
-    (['lat', 'components'], ['plaer'], r"lat\.components: no component 'plaer'; there are"),
-    (['lat', 'delay'], 0, r'lat\.delay: expected a finite number of at least'),
-    (['lossy', 'share'], 1.5, r'lossy\.share: expected a finite number'),
-    (['extra', 'name'], 'slam', r"extra\.name: 'slam' is a component"),
-    (['extra', 'tasks', 0, 'publish', 0, 'topic'], 'joy', "no component publishes 'joy'"),
-    (['extra', 'tasks', 0, 'upon'], 'joy', "no component publishes 'joy'"),
-    (['order', 'component'], 'player', r"order\.component: 'player' never publishes two"),
-    (['unknown', 'component'], 'plaer', r"unknown\.component: no component 'plaer'"),
-    (['unknown', 'task', 'publish', 0, 'type'], 'std_msgs/String', 'as std_msgs/String'),
-    (['unknown', 'component'], 'slam', "'slam' does not publish 'person_hypotheses' otherwise"),
-])
-def test_error_in_the_file_names_the_key(tmp_path: Path, where: List[Any], value: Any,
-                                         message: str) -> None:
-    data = yaml.safe_load(SCENARIO.read_text(encoding='utf-8'))
-    section = data['faults']
-    for key in where[:-1]:
-        section = section[key]
-    section[where[-1]] = value
-    path = tmp_path / 'robot.yaml'
-    path.write_text(yaml.safe_dump(data), encoding='utf-8')
-    with pytest.raises(SectionError, match=rf'robot\.yaml: faults\..*{message}'):
-        load_scenario(path)

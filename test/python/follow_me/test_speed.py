@@ -46,7 +46,7 @@ def test_no_time_of_it_is_forgotten(robot: Scenario) -> None:
                 assert slower.takes == output.takes.times(2.0)
                 assert slower.waits == output.waits.times(2.0)
     faults, longer_faults = robot.faults, slow.faults
-    assert longer_faults.lat.delay == 2.0 * faults.lat.delay
+    assert longer_faults.lat.value == 2.0 * faults.lat.value
     assert longer_faults.rs.ramp == 2.0 * faults.rs.ramp
     assert longer_faults.ac.periods == tuple(2.0 * period for period in faults.ac.periods)
     assert longer_faults.ac.offset_ns(2 * 10 ** 9) == pytest.approx(

@@ -314,7 +314,7 @@ def test_what_was_told_before_goes() -> None:
     of = Said('/watch')
     of.on_components(components(of_component('/a'), mutes=['/a']))
     of.on_components(components(of_component('/b')))
-    assert [each.name for each in of.components('name', '')] == ['/b'] and of.mutes == []
+    assert [each.name for each in of.components('name', '')] == ['/b'] and of.listed('mutes') == []
 
 
 def test_of_many_mutes_the_first_are_shown() -> None:

@@ -18,8 +18,7 @@ from self_awareness.commands import convert, score
 from self_awareness.reporting.report.headline import headline
 from self_awareness.reporting.report.incidents import Incident, incidents
 from self_awareness.reporting.report.intervals import (ALARM, SUSPICION, Interval, NamedSuspect,
-                                                       intervals)
-from self_awareness.reporting.report.silences import Silence
+                                                       Silence, intervals)
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 

@@ -1,15 +1,16 @@
 """Plots as files: their formats, and what they keep of long recordings."""
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
-from typing import Optional
+from types import SimpleNamespace
+from typing import Any, Optional
 
 import numpy as np
 import pytest
 
 from self_awareness import Roc
-from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_roc, save_scores
+from self_awareness.reporting.plots import ScorePlot, save_roc, save_scores
+from self_awareness.reporting.report.timeline import timeline
 
 STARTS = {'png': b'\x89PNG', 'pdf': b'%PDF', 'svg': b'<?xml'}
 
@@ -18,8 +19,14 @@ def scores(windows: int, lowest: float = -2.0, threshold: Optional[float] = -1.0
     values = np.full(windows, -0.3)
     values[windows // 2] = lowest
     values[:3] = np.nan
-    return ScorePlot('robot.bag', 0.1 * np.arange(windows), values, values < -1.0, threshold,
-                     [(0.0, 5.0)], [NamedAlarm(0.05 * windows, 0.06 * windows, '/player')])
+    verdicts = SimpleNamespace(start=np.arange(windows) * 10 ** 8, score=values,
+                               abnormal=values < -1.0, settling=np.arange(windows) < 50,
+                               alarms=[], suspicions=[])
+    judged: Any = SimpleNamespace(
+        verdicts=verdicts, recording=SimpleNamespace(origin=0), by=SimpleNamespace(
+            threshold=threshold, evidence='of it',
+            trained=SimpleNamespace(window=10 ** 8, event_types=['a', 'b'])))
+    return ScorePlot('robot.bag', timeline(judged), [(0.05 * windows, 0.06 * windows, '/player')])
 
 
 @pytest.mark.parametrize('ending', sorted(STARTS))
@@ -69,7 +76,7 @@ def test_a_name_with_dollars_is_no_formula(tmp_path: Path) -> None:
     plot = scores(600)
     roc = Roc([-0.1, -0.2, -0.3], [-2.0, -0.15])
     with rc_context({'svg.fonttype': 'none'}):  # text as text
-        save_scores(str(tmp_path / 'scores.svg'), [replace(plot, title=name)])
+        save_scores(str(tmp_path / 'scores.svg'), [plot._replace(title=name)])
         save_roc(str(tmp_path / 'roc.svg'), name, [(name, roc)], roc.at(-1.0))
     for path in tmp_path.iterdir():
         assert name in path.read_text(encoding='utf-8')

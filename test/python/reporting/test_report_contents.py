@@ -10,11 +10,10 @@ import pytest
 from conftest import jittery_robot
 from judged_recordings import judged, with_graph, without_laser
 
-from self_awareness.reporting.report import columns, figures
-from self_awareness.reporting.report.delays import histogram_of
+from self_awareness.reporting.report import figures, timeline
+from self_awareness.reporting.report.against import against
 from self_awareness.reporting.report.intervals import ALARM
 from self_awareness.reporting.report.neighbours import ROOT, VICTIM
-from self_awareness.reporting.report.rates import counts_of
 from self_awareness.reporting.report.section import (ALARMED, NOT_JUDGED, QUIET, SUSPICIOUS,
                                                      section)
 from self_awareness.reporting.report.timeline import overview
@@ -44,7 +43,7 @@ def test_an_incident_has_its_suspects_delays_and_graph(evidence_model: str, make
     incident = found.incidents[0]
     alarm, details = incident.main, found.details[incident.key]
     assert incident.level == ALARM and 12.0 < alarm.start < 13.0 and alarm.cleared
-    first, histogram = alarm.suspects[0], details.evidence[0].histogram
+    first, histogram = alarm.suspects[0], details.evidence[0]
     assert (first.component, first.short) == ('/laser', 'fell silent')
     assert histogram.title == 'gaps between two /laser /scan std_msgs/String'
     assert histogram.seen == pytest.approx(alarm.start - alarm.began)
@@ -68,14 +67,13 @@ def test_a_rate_has_counts_and_what_is_usual(evidence_model: str, make_bag) -> N
                              usual_shortest=18.0, usual_longest=22.0, lasted=2.0, words='')
     suspect: Any = SimpleNamespace(id=laser, reason=reason)
     alarm: Any = SimpleNamespace(begin=3_021_000_000_000, end=3_032_000_000_000)
-    assert histogram_of(of, suspect) is None
-    counts = counts_of(of, alarm, suspect)
+    counts = against(of, alarm, suspect)
     assert counts.usual == (36.0, 44.0) and counts.title.startswith('/laser /scan')
     by_time = dict(zip(counts.times, counts.counts))
     assert all(36 <= by_time[time] <= 44 for time in (10.0, 18.0, 36.0))
     assert all(count < 36 for time, count in by_time.items() if 22.5 < time < 29.5)
     assert (counts.begin, counts.end) == pytest.approx((21.0, 32.0), abs=0.1)
-    drawn = figures.counts(counts)
+    drawn = figures.evidence(counts)
     assert drawn['layout']['shapes'][0]['y0'] == 36.0
 
 
@@ -94,9 +92,9 @@ def test_lanes_and_score_agree(evidence_model: str, make_bag) -> None:
 def test_long_recordings_are_drawn_in_stretches_that_lose_no_extreme(
         evidence_model: str, make_bag, monkeypatch: pytest.MonkeyPatch) -> None:
     of = judged(evidence_model, make_bag('dead.bag', without_laser(3000.0, 120.0)))
-    monkeypatch.setattr(columns, 'MOST_LONG', 50)
-    monkeypatch.setattr(columns, 'MOST_FINE', 160)
-    begins = columns.cut(of.verdicts, 3)
+    monkeypatch.setattr(timeline, 'MOST_LONG', 50)
+    monkeypatch.setattr(timeline, 'MOST_FINE', 160)
+    begins = timeline.cut(of.verdicts, 3)
     assert len(begins) <= 50 + 160 and begins[0] == 0 and (np.diff(begins) > 0).all()
     drawn = overview(of, []).timeline
     assert len(drawn.lowest) == len(begins) < len(of.verdicts.start) / 3
@@ -114,9 +112,9 @@ def test_long_recordings_are_drawn_in_stretches_that_lose_no_extreme(
 def test_with_many_components_there_are_fewer_stretches(evidence_model: str, make_bag,
                                                         monkeypatch) -> None:
     of = judged(evidence_model, make_bag('dead.bag', without_laser(3000.0)))
-    monkeypatch.setattr(columns, 'MOST_CELLS', 1000)
-    assert len(columns.cut(of.verdicts, 20)) <= 52
-    assert len(columns.cut(of.verdicts, 10_000)) >= 1
+    monkeypatch.setattr(timeline, 'MOST_CELLS', 1000)
+    assert len(timeline.cut(of.verdicts, 20)) <= 52
+    assert len(timeline.cut(of.verdicts, 10_000)) >= 1
 
 
 def test_what_was_not_judged_is_told(evidence_model: str, make_bag) -> None:
@@ -157,6 +155,6 @@ def test_the_papers_detector_has_suspects_and_no_lanes(evidence_model: str,
         (suspect, shown) for each in found.incidents
         for suspect, shown in zip(each.main.named, found.details[each.key].evidence)
         if suspect.short == 'fell silent')
-    assert silent.component == '/laser' and shown.histogram.seen > 0.05
-    assert sum(shown.histogram.counts) == 2399
+    assert silent.component == '/laser' and shown.seen > 0.05
+    assert sum(shown.counts) == 2399
     assert any('one score for all' in each.why for each in found.unjudged)

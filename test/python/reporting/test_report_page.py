@@ -14,7 +14,7 @@ from judged_recordings import judged, with_graph, without_laser
 
 from self_awareness.commands import score, train
 from self_awareness.reporting.report import figures
-from self_awareness.reporting.report.delays import Histogram
+from self_awareness.reporting.report.against import Histogram
 from self_awareness.reporting.report.page import save_page, save_report, script_json
 from self_awareness.reporting.report.section import section
 from self_awareness.reporting.report.timeline import MOST_LANES
@@ -85,8 +85,8 @@ def test_every_figure_is_one_that_plotly_knows(evidence_model: str, model_file: 
 
 
 def test_the_seen_delay_is_marked_in_its_histogram() -> None:
-    drawn = figures.histogram(Histogram('gaps', [0.04, 0.05, 0.06], [10, 30], 0.5, 'now: 0.5 s',
-                                        (0.045, 0.055)))
+    drawn = figures.evidence(Histogram('gaps', [0.04, 0.05, 0.06], [10, 30], 0.5, 'now: 0.5 s',
+                                       (0.045, 0.055)))
     line, = [shape for shape in drawn['layout']['shapes'] if shape['type'] == 'line']
     assert line['x0'] == line['x1'] == 0.5
     assert drawn['data'][0]['y'] == [25.0, 75.0]
@@ -97,8 +97,8 @@ def test_the_seen_delay_is_marked_in_its_histogram() -> None:
 
 @pytest.mark.parametrize('first_edge', [0.0, 0.04])
 def test_log_bins_from_0_on_can_be_drawn(first_edge: float) -> None:
-    drawn = figures.histogram(Histogram('gaps', [first_edge, 0.05, 0.6], [1, 1], None, 'none',
-                                        None))
+    drawn = figures.evidence(Histogram('gaps', [first_edge, 0.05, 0.6], [1, 1], None, 'none',
+                                       None))
     low, high = drawn['layout']['xaxis']['range']
     assert -3 < low < high < 0
     assert all(edge > 0 for edge in drawn['data'][0]['x'])
@@ -151,27 +151,6 @@ def test_without_plotly_it_says_what_to_install(evidence_model: str, make_bag, t
     assert score.main(arguments) == 1
     captured = capsys.readouterr()
     assert 'apt install python3-plotly' in captured.err and captured.out == ''
-
-
-def test_a_report_overwrites_no_input(evidence_model: str, tmp_path: Path, capsys) -> None:
-    bag = write_bag(tmp_path / 'bag.html', jittery_robot(7000.0, 30.0, 4))
-    before = Path(bag).read_bytes()
-    assert score.main([bag, '--model', evidence_model, '--report', bag]) == 1
-    assert bag in capsys.readouterr().err and Path(bag).read_bytes() == before
-
-
-def test_a_bag_without_events_is_in_no_report(evidence_model: str, make_bag, tmp_path: Path,
-                                              capsys) -> None:
-    player = '/play_1795206536731453261'
-    good = make_bag('good.bag', jittery_robot(7000.0, 30.0, 4))
-    bag = make_bag('replay.bag', [(t, player, '/a') for t, _, _ in jittery_robot(1.0, 9.0, 1)])
-    report = tmp_path / 'r.html'
-    assert score.main([bag, '--model', evidence_model, '--report', str(report)]) == 1
-    assert sorted(os.listdir(tmp_path)) == ['good.bag', 'replay.bag']
-    assert score.main([good, bag, '--model', evidence_model, '--report', str(report)]) == 1
-    assert bag in capsys.readouterr().err
-    page = report.read_text(encoding='utf-8')
-    assert good in page and bag not in page
 
 
 def test_any_number_of_event_types_is_a_bounded_page(

@@ -10,12 +10,11 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness.reporting.number_text import percent
-from self_awareness.reporting.report.delays import Histogram, seconds
+from self_awareness.reporting.report.against import Counts, Evidence, Histogram, seconds
 from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.intervals import ALARM, Interval
-from self_awareness.reporting.report.rates import Counts
 from self_awareness.reporting.report.timeline import Lanes, Overview, Timeline
+from self_awareness.reporting.text import percent
 
 Figure = Dict[str, Any]
 """Traces and layout of a plot (`data`, `layout`)."""
@@ -70,7 +69,12 @@ def over_time(found: Overview, incidents: Sequence[Incident]) -> Figure:
     return {'data': traces, 'layout': layout}
 
 
-def histogram(shown: Histogram) -> Figure:
+def evidence(shown: Evidence) -> Figure:
+    """Return what speaks against a suspect."""
+    return _histogram(shown) if isinstance(shown, Histogram) else _counts(shown)
+
+
+def _histogram(shown: Histogram) -> Figure:
     """Return the delays of training, with what was seen marked in them."""
     # Log bins of one width: a count stands for its bin, not for its seconds.
     edges = [max(edge, shown.edges[1] / 2 if edge <= 0 else edge) for edge in shown.edges]
@@ -136,7 +140,7 @@ def two_histograms(before: Bins, after: Bins) -> Figure:
         'yaxis': {'title': {'text': '%'}, 'fixedrange': True}}}
 
 
-def counts(shown: Counts) -> Figure:
+def _counts(shown: Counts) -> Figure:
     """Return the number of messages by time, with what is usual as a band."""
     low, high = shown.usual
     return {'data': [{

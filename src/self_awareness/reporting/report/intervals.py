@@ -1,16 +1,17 @@
-"""Alarms and suspicions of a recording: when, whom they name, and why."""
+"""Alarms and suspicions of a recording: when, whom they name, why, and who was silent then."""
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from typing import Dict, List, Optional
 
+import numpy as np
+
 from self_awareness import Alarm, Suspect
 from self_awareness.calibration.heads_and_tails import stopped_before_end
-from self_awareness.reporting.number_text import of_limit
 from self_awareness.reporting.report.judged import Judged
-from self_awareness.reporting.report.silences import Silence, silence_of, silence_of_all
-from self_awareness.stamps import moment
+from self_awareness.reporting.text import of_limit
+from self_awareness.stamps import SECOND_NS, moment
 
 ALARM, SUSPICION = 'alarm', 'suspicion'
 """The levels of an interval."""
@@ -18,12 +19,28 @@ ALARM, SUSPICION = 'alarm', 'suspicion'
 MOST_LISTED = 400
 """Alarms and suspicions that are listed, at most so many; alarms come first."""
 
+_CLEARLY_LONGER = 3
+"""A pause is a silence if it is so many times as long as the longest one in training."""
+
 _SHORT = {'slow': 'sends too seldom', 'fast': 'sends too often',
           'late': 'paused for too long', 'out of order': 'sends at an irregular pace',
           'never came': 'was not heard', 'stranger': 'is new',
           'not subscribed': 'does not subscribe'}
 _SHORT_OF_ANSWERS = {'died': 'does not answer', 'late': 'answers late', 'early': 'answers early',
                      'out of order': 'comes at unusual delays'}
+
+
+@dataclass(frozen=True)
+class Silence:
+    """Times in seconds from the recording's first message.
+
+    Args:
+        begin: its last message, or the recording's first one.
+        back: its next message; None: there is none until the recording's end.
+    """
+
+    begin: float
+    back: Optional[float]
 
 
 @dataclass(frozen=True)
@@ -129,12 +146,12 @@ def _interval(judged: Judged, alarm: Alarm) -> Interval:
         of_limit(alarm.lowest_score, judged.by.threshold),
         alarm.evidence or 'what is left of the alarm',
         alarm.busy,
-        silence_of_all(judged, alarm) if alarm.kind == 'all silent' else None, suspects, later,
+        _silence_of_all(judged, alarm) if alarm.kind == 'all silent' else None, suspects, later,
         stopped_before_end(judged.recording, alarm))
 
 
 def _named(judged: Judged, suspect: Suspect, alarm: Alarm) -> NamedSuspect:
-    silence = silence_of(judged, alarm, suspect)
+    silence = _silence_of(judged, alarm, suspect)
     return NamedSuspect(
         suspect.component, str(judged.recording.event_types[suspect.id]),
         _short(suspect, silence), suspect.reason.words, judged.seconds(suspect.since),
@@ -155,3 +172,39 @@ def _short(suspect: Suspect, silence: Optional[Silence]) -> str:
 def _began(suspect: Suspect, start: float) -> Optional[float]:
     """Return when the trouble began [s]: what the suspect's numbers look back to."""
     return None if math.isnan(suspect.reason.lasted) else start - suspect.reason.lasted
+
+
+def _silence_of(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Silence]:
+    """Return the longest silence of a suspect's event type while an alarm stood.
+
+    None: it was not silent, or it is not about its own messages: an answer that does not come may
+    come without its question.
+    """
+    reason = suspect.reason
+    if reason.kind in ('never came', 'stranger') or (reason.after and reason.kind != 'died'):
+        return None
+    looks_back = 0.0 if math.isnan(reason.lasted) else reason.lasted
+    silence = _longest(judged, judged.edges_of(suspect.id),
+                       suspect.since - int(looks_back * SECOND_NS), alarm.end)
+    if reason.kind == 'died' and not reason.after:
+        return silence
+    usual = judged.by.trained.longest_gap(suspect.id) / SECOND_NS
+    end = judged.seconds(judged.recording.end) if silence.back is None else silence.back
+    return silence if usual > 0 and end - silence.begin > _CLEARLY_LONGER * usual else None
+
+
+def _silence_of_all(judged: Judged, alarm: Alarm) -> Silence:
+    """Return the longest time without any event, or any of some computers, as an alarm stood."""
+    edges = (judged.edges_of_components(alarm.silent.components)
+             if alarm.silent is not None and alarm.silent.hosts else judged.edges_of_all())
+    return _longest(judged, edges, alarm.begin, alarm.end)
+
+
+def _longest(judged: Judged, edges: np.ndarray, begin: int, end: int) -> Silence:
+    """Return the longest of the gaps between edges that a stretch of time meets."""
+    first = min(max(int(np.searchsorted(edges, begin, side='right')) - 1, 0), len(edges) - 2)
+    last = int(np.searchsorted(edges, end, side='right')) + 1
+    longest = first + int(np.argmax(np.diff(edges[first:max(last, first + 2)])))
+    at_end = longest == len(edges) - 2
+    return Silence(judged.seconds(int(edges[longest])),
+                   None if at_end else judged.seconds(int(edges[longest + 1])))

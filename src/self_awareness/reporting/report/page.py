@@ -11,25 +11,12 @@ from urllib.parse import quote
 
 from self_awareness.output_files import replacing
 from self_awareness.reporting.report import figures, neighbours
-from self_awareness.reporting.report.details import Details
 from self_awareness.reporting.report.headline import clock
 from self_awareness.reporting.report.incidents import Incident
-from self_awareness.reporting.report.section import Section
+from self_awareness.reporting.report.section import Details, Section
 
 _FOLDER = os.path.dirname(__file__)
-_ENDING = '.html'
 _WITHOUT_EVAL = 5  # the first version of plotly whose plotly.js calls no eval()
-
-
-def check_name(path: str) -> str:
-    """Return the name of a page.
-
-    Raises:
-        ValueError: it does not end in .html: no browser would open it.
-    """
-    if not path.lower().endswith(_ENDING):
-        raise ValueError(f'expected a name that ends in {_ENDING}, not {path!r}')
-    return path
 
 
 def check_installed() -> None:
@@ -103,10 +90,8 @@ def script_json(value: Any) -> str:
 def _drawn(incident: Incident, details: Optional[Details]) -> Dict[str, Any]:
     drawn: Dict[str, figures.Figure] = {}
     for index, evidence in enumerate([] if details is None else details.evidence):
-        if evidence.histogram is not None:
-            drawn[f'{incident.key}-delays-{index}'] = figures.histogram(evidence.histogram)
-        elif evidence.counts is not None:
-            drawn[f'{incident.key}-delays-{index}'] = figures.counts(evidence.counts)
+        if evidence is not None:
+            drawn[f'{incident.key}-delays-{index}'] = figures.evidence(evidence)
     return {'range': [round(incident.main.start, 3), round(incident.main.end, 3)],
             'figures': drawn}
 

@@ -7,15 +7,19 @@ from typing import Dict, List, Optional, Tuple
 import numpy as np
 
 from self_awareness.recordings import in_words
-from self_awareness.reporting import coverage_text, unheard_text
+from self_awareness.reporting import coverage_text
 from self_awareness.reporting.report import intervals
-from self_awareness.reporting.report.details import Details, details
+from self_awareness.reporting.report.against import Evidence, against
 from self_awareness.reporting.report.headline import clock
-from self_awareness.reporting.report.incidents import Incident, incidents, place_of
-from self_awareness.reporting.report.intervals import ALARM, SUSPICION
+from self_awareness.reporting.report.incidents import (MOST_DETAILS, Incident, incidents,
+                                                       place_of)
+from self_awareness.reporting.report.intervals import ALARM, SUSPICION, Interval
 from self_awareness.reporting.report.judged import Judged
-from self_awareness.reporting.report.timeline import Overview, overview
+from self_awareness.reporting.report.neighbours import Neighbourhood, neighbourhood
+from self_awareness.reporting.report.next_steps import NextSteps, next_steps
+from self_awareness.reporting.report.timeline import Overview, overview, strongest_track
 from self_awareness.reporting.report.unjudged import Unjudged, unjudged
+from self_awareness.reporting.text import percent
 from self_awareness.stamps import SECOND_NS, moment
 
 QUIET, SUSPICIOUS, ALARMED, NOT_JUDGED = 'quiet', 'suspicious', 'alarmed', 'not judged'
@@ -40,6 +44,24 @@ class Summary:
 
 
 @dataclass(frozen=True)
+class Details:
+    """What is shown of an incident when it is opened.
+
+    Args:
+        decided: which track was strongest when the main interval was raised, in words; empty: not
+            known.
+        evidence: against each suspect that the main interval names; None: it cannot be drawn.
+        graph: who publishes to whom near the cause; None: not known.
+        next: what to look at.
+    """
+
+    decided: str
+    evidence: List[Optional[Evidence]]
+    graph: Optional[Neighbourhood]
+    next: NextSteps
+
+
+@dataclass(frozen=True)
 class Section:
     """All that the report says of one recording.
 
@@ -50,7 +72,7 @@ class Section:
         summary: in words.
         overview: the score and the evidence over time.
         incidents: what happened, the worst first.
-        details: of the first incidents, by their keys.
+        details: of the first MOST_DETAILS incidents, by their keys.
         not_listed: number of further alarms and suspicions.
         unjudged: what was not judged.
         watched: how soon the death of each component is found: a table, its head first; empty: not
@@ -80,12 +102,36 @@ def section(judged: Judged, key: str) -> Section:
     found = overview(judged, intervals.components(judged))
     listed = intervals.intervals(judged)
     happened = incidents(judged, listed, key)
-    shown = details(judged, found, happened)
+    steps = next_steps(judged, happened)
+    shown = {each.key: Details(_decided(judged, found, each.main),
+                               [against(judged, each.main.of, suspect.of)
+                                for suspect in each.main.named],
+                               _graph(judged, each), steps[each.key])
+             for each in happened[:MOST_DETAILS]}
     total = len(judged.verdicts.alarms) + len(judged.verdicts.suspicions)
     return Section(key, str(judged.recording.part), _facts(judged),
                    _summary(judged, happened), found, happened, shown,
                    total - len(listed), unjudged(judged), _watched(judged),
-                   unheard_text.lines(unheard_text.summarise(judged.by.trained.unheard)))
+                   coverage_text.unheard_lines(coverage_text.unheard(judged.by.trained.unheard)))
+
+
+def _graph(judged: Judged, incident: Incident) -> Optional[Neighbourhood]:
+    named = [incident.cause, *(suspect.component for suspect in incident.main.named)]
+    found = neighbourhood(judged.by.trained.graph, [name for name in named if name])
+    return found if found.roles else None
+
+
+def _decided(judged: Judged, found: Overview, main: Interval) -> str:
+    time = main.start - judged.by.trained.window / 2e9  # in the window that raised it
+    strongest = strongest_track(found, judged, time)
+    if strongest is None:
+        return ''
+    track, share = strongest
+    kinds = judged.by.trained.event_types
+    name = str(kinds[track.to_id])
+    if track.from_id != track.to_id:
+        name = f'{kinds[track.from_id]} → {name}'
+    return f'{track.channel} of {name}: {percent(share)} of its limit'
 
 
 def _watched(judged: Judged) -> List[Tuple[str, ...]]:

@@ -1,4 +1,7 @@
-"""The score over the whole recording, and the evidence of each component: what is drawn of it."""
+"""The score over the whole recording, and the evidence of each component: what is drawn of it.
+
+It is cut into stretches: long ones, and single windows near the alarms.
+"""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -6,12 +9,21 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EvidenceLanes, Track
-from self_awareness.reporting.report import columns
+from self_awareness import Alarm, EvidenceLanes, Track, Verdicts
 from self_awareness.reporting.report.judged import Judged
+from self_awareness.stamps import SECOND_NS
 
 MOST_LANES = 40
 """Components that have a lane of their own, at most so many."""
+MOST_LONG = 1000
+"""Stretches of the whole recording, at most about so many."""
+MOST_FINE = 1500
+"""Windows that are stretches of their own, at most so many."""
+MOST_CELLS = 20_000_000
+"""Stretches times components, at most so many: they are kept in memory."""
+
+_BEFORE = 5 * SECOND_NS
+_AFTER = 15 * SECOND_NS
 
 
 @dataclass(frozen=True)
@@ -23,6 +35,7 @@ class Timeline:
         lowest: score of each stretch, in units of the threshold's size; NaN: none.
         highest: likewise.
         abnormal: whether a window of it is.
+        silent: whether a window of it has no score, as the paper's detector has none of silence.
         unit: the threshold's size; 1: not calibrated.
         limit: the threshold in this unit: -1 of evidence, 1 of the paper's; None: not calibrated.
         settling: start and end [s] of the times in which no alarm is raised.
@@ -32,6 +45,7 @@ class Timeline:
     lowest: np.ndarray
     highest: np.ndarray
     abnormal: np.ndarray
+    silent: np.ndarray
     unit: float
     limit: Optional[float]
     settling: List[Tuple[float, float]]
@@ -68,11 +82,6 @@ class Overview:
     lanes: Optional[Lanes]
     evidence: Optional[EvidenceLanes]
 
-    def stretch(self, time: float) -> int:
-        """Return the index of the stretch that holds a time [s]."""
-        index = int(np.searchsorted(self.timeline.edges, time, side='right')) - 1
-        return min(max(index, 0), len(self.timeline.lowest) - 1)
-
 
 def overview(judged: Judged, first: Sequence[str]) -> Overview:
     """Return what is drawn of a recording over time.
@@ -82,22 +91,51 @@ def overview(judged: Judged, first: Sequence[str]) -> Overview:
         first: components whose lanes come first, the most important one first.
     """
     verdicts = judged.verdicts
-    # There are no more components than event types.
-    begins = columns.cut(verdicts, len(judged.by.trained.event_types))
+    begins = _begins(judged)
     found = judged.lanes(verdicts.start[begins])
-    return Overview(_timeline(judged, begins),
-                    None if found is None else select_lanes(found, first), found)
+    return Overview(timeline(judged), None if found is None else select_lanes(found, first), found)
+
+
+def cut(verdicts: Verdicts, components: int) -> np.ndarray:
+    """Return the index of the first window of each stretch, in order.
+
+    Near the beginning of an alarm, and if there is room of a suspicion, each window is one.
+
+    Args:
+        verdicts: at least one window.
+        components: of the model.
+    """
+    windows = len(verdicts.start)
+    most = max(1, min(MOST_LONG + MOST_FINE, MOST_CELLS // max(components, 1)))
+    long = min(MOST_LONG, most)
+    step = -(-windows // long)
+    first = np.zeros(windows, dtype=bool)
+    first[::step] = True
+    room = most - int(first.sum())
+    for begin, end in _near(verdicts, [*verdicts.alarms, *verdicts.suspicions]):
+        end = min(end, begin + max(room, 0))
+        room -= int((~first[begin:end]).sum())
+        first[begin:end] = True
+        if end < windows:
+            first[end] = True  # the long stretch goes on after it
+    return np.flatnonzero(first)
+
+
+def _near(verdicts: Verdicts, stretches: Sequence[Alarm]) -> List[Sequence[int]]:
+    starts = np.array([stretch.begin for stretch in stretches], dtype=np.int64)
+    begins = np.searchsorted(verdicts.start, starts - _BEFORE)
+    ends = np.searchsorted(verdicts.start, starts + _AFTER)
+    return list(zip(begins.tolist(), ends.tolist()))
 
 
 def strongest_track(found: Overview, judged: Judged, time: float) -> Optional[Tuple[Track, float]]:
     """Return the track that has the largest share of its limit at a time [s], and the share."""
     if found.evidence is None or judged.by.evidence is None:
         return None
-    stretch = found.stretch(time)
-    index = found.evidence.tracks[stretch]
-    if index is None:
-        return None
-    return (judged.by.evidence.tracks[index], float(found.evidence.strongest[stretch]))
+    at = int(np.searchsorted(found.timeline.edges[1:-1], time, side='right'))
+    index = found.evidence.tracks[at]
+    return index if index is None else (judged.by.evidence.tracks[index],
+                                        float(found.evidence.strongest[at]))
 
 
 def select_lanes(found: EvidenceLanes, first: Sequence[str]) -> Lanes:
@@ -112,12 +150,18 @@ def select_lanes(found: EvidenceLanes, first: Sequence[str]) -> Lanes:
                  float(largest[rest].max()) if rest else 0.0)
 
 
-def _timeline(judged: Judged, begins: np.ndarray) -> Timeline:
-    verdicts, window = judged.verdicts, judged.by.trained.window
+def _begins(judged: Judged) -> np.ndarray:
+    # There are no more components than event types.
+    return cut(judged.verdicts, len(judged.by.trained.event_types))
+
+
+def timeline(judged: Judged) -> Timeline:
+    """Return the score of a recording, with at least one window, by stretch."""
+    verdicts, window, begins = judged.verdicts, judged.by.trained.window, _begins(judged)
     threshold = judged.by.threshold
     unit = abs(threshold) if threshold else 1.0
     starts = (np.append(verdicts.start, verdicts.start[-1] + window)
-              - judged.recording.origin) / 1e9
+              - judged.recording.origin) / SECOND_NS
     scores = verdicts.score / unit
     if judged.by.evidence is None:
         scores = np.nan_to_num(scores)  # the paper's score of silence is 0
@@ -127,6 +171,7 @@ def _timeline(judged: Judged, begins: np.ndarray) -> Timeline:
         lowest=np.fmin.reduceat(scores, begins),
         highest=np.fmax.reduceat(scores, begins),
         abnormal=np.logical_or.reduceat(verdicts.abnormal, begins),
+        silent=np.logical_or.reduceat(np.isnan(verdicts.score), begins),
         unit=unit,
         limit=None if threshold is None else threshold / unit,
         settling=[(float(starts[a]), float(starts[b])) for a, b in steps.reshape(-1, 2)])

@@ -4,11 +4,9 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass
-from typing import List, Sequence, Set
+from typing import List, Sequence
 
-import numpy as np
-
-from self_awareness.recordings import unknown_modes, unknown_types
+from self_awareness.recordings import unknown
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import SECOND_NS
 
@@ -40,11 +38,7 @@ def unjudged(judged: Judged) -> List[Unjudged]:
     if by.threshold is None:
         found.append(Unjudged('everything', 'the model has no limits: calibrate it (rosrun '
                               'self_awareness calibrate)', []))
-    counts = np.bincount(judged.recording.ids, minlength=len(by.trained.event_types))
-    found += _unknown(judged, counts)
-    found += _silent(judged, counts)
-    found += _too_rare(judged)
-    found += _without_limit(judged)
+    found += [*_unknown(judged), *_silent(judged), *_too_rare(judged), *_without_limit(judged)]
     settling = int(judged.verdicts.settling.sum()) * by.trained.window / SECOND_NS
     if settling > 0 and by.threshold is not None:
         found.append(Unjudged(f'{settling:.1f} s of settling', 'too little is known in the first '
@@ -66,30 +60,25 @@ def _listed(what: str, why: str, names: Sequence[str]) -> List[Unjudged]:
     return [Unjudged(text, why, list(names[:MOST_NAMES]), max(len(names) - MOST_NAMES, 0))]
 
 
-def _unknown(judged: Judged, counts: np.ndarray) -> List[Unjudged]:
-    known = len(judged.by.trained.event_types)
-    order = sorted(range(known, len(counts)), key=lambda kind: -counts[kind])
-    new = set(unknown_types(judged.by.trained, judged.recording))
-    modes = set(unknown_modes(judged.by.trained, judged.recording))
-
-    def names(kinds: Set[int]) -> List[str]:
-        return [f'{judged.recording.event_types[kind]}: {counts[kind]}' for kind in order
-                if kind in kinds and counts[kind]]
+def _unknown(judged: Judged) -> List[Unjudged]:
+    new, modes, unheard = ([f'{name}: {count}' for count, name in found]
+                           for found in unknown(judged.by.trained, judged.recording))
     return (_listed('that training never saw',
-                    'nothing is known of them; with each their number of events', names(new))
+                    'nothing is known of them; with each their number of events', new)
             + _listed('of modes that training never saw',
-                      'such a mode says nothing; with each how often it was told', names(modes))
+                      'such a mode says nothing; with each how often it was told', modes)
             + _listed('that nobody subscribed to in training',
                       'they were published then, and not recorded; with each their number of '
-                      'events', names(set(order) - new - modes)))
+                      'events', unheard))
 
 
-def _silent(judged: Judged, counts: np.ndarray) -> List[Unjudged]:
-    kinds = judged.by.trained.event_types
+def _silent(judged: Judged) -> List[Unjudged]:
+    heard = set(judged.recording.heard.tolist())
     return _listed('of the model without any event',
                    'not heard in this recording; those that came after every start in training '
                    'are a suspicion after a while',
-                   [str(kind) for index, kind in enumerate(kinds) if counts[index] == 0])
+                   [str(kind) for index, kind in enumerate(judged.by.trained.event_types)
+                    if index not in heard])
 
 
 def _too_rare(judged: Judged) -> List[Unjudged]:

@@ -1,4 +1,7 @@
-"""What is in an event log, as plain values: for reading, and for JSON."""
+"""What is in an event log or a result bag, and of what version a file is (docs/files.md).
+
+As plain values: for reading, and for JSON.
+"""
 from __future__ import annotations
 
 import os
@@ -7,11 +10,45 @@ from typing import Any, Dict, List, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (BagSummary, EncodingRules, FileVersion, encoding_file, read_events,
-                            summarise_bag)
-from self_awareness.reporting.version_summary import summarise_version
+from self_awareness import (METHOD, BagSummary, EncodingRules, FileVersion, encoding_file,
+                            read_events, summarise_bag)
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training.robot_graph import RobotGraph
+
+
+def summarise_version(version: FileVersion) -> Dict[str, Any]:
+    """Return what a file says of its version; `method` is None where no method made it."""
+    return {
+        'package': version.package,
+        'format': version.format,
+        'oldest_reader': version.oldest_reader,
+        'method': version.method or None,
+    }
+
+
+def describe_version(summary: Dict[str, Any]) -> str:
+    """Return the same in words."""
+    text = f'self_awareness {summary["package"]}, format {summary["format"]}'
+    if summary['method'] is None:
+        return text
+    older = f' (this is {METHOD})' if summary['method'] != METHOD else ''
+    return f'{text}, method {summary["method"]}{older}'
+
+
+def summarise_results(path: str) -> Dict[str, Any]:
+    """Return when a result bag begins and ends, and how much is in it.
+
+    Raises:
+        BagError: it cannot be read.
+    """
+    summary = summarise_bag(path)
+    return {
+        'version': summarise_version(FileVersion.of_result_bag(path)),
+        'size': os.path.getsize(path),
+        'start_ns': summary.start,
+        'end_ns': summary.end,
+        'messages': summary.messages,
+    }
 
 
 def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:

@@ -6,7 +6,7 @@ from typing import Optional
 
 import pytest
 
-from self_awareness.reporting.number_text import of_limit, rounded
+from self_awareness.reporting.text import of_limit, rounded
 
 
 @pytest.mark.parametrize('value, digits, text', [

@@ -1,0 +1,63 @@
+"""Numbers, names and tables as people read them."""
+from __future__ import annotations
+
+import math
+from typing import List, Optional, Sequence
+
+_FORMULA = ('=', '+', '-', '@')
+
+
+def rounded(value: float, digits: int) -> str:
+    """Return a number with so many significant digits; without an exponent from 0.0001 to 999999.
+
+    As `{value:.2g}`, which makes 1200 s to `1.2e+03 s`.
+    """
+    return f'{float(f"{value:.{digits}g}"):g}'
+
+
+def percent(share: float) -> str:
+    """Return a share as people read it: '110 %'."""
+    return f'{100.0 * share + 0.0:.0f} %'  # never -0
+
+
+def of_limit(lowest: float, threshold: Optional[float]) -> str:
+    """Return how far a score went: '110 % of the limit', which only the evidence detector has.
+
+    Args:
+        lowest: the score; NaN: there is none.
+        threshold: of the score, below 0 of the evidence detector; None: not calibrated.
+    """
+    if threshold is not None and threshold < 0.0:
+        return f'{percent(lowest / threshold)} of the limit'
+    score = 'none' if math.isnan(lowest) else f'{lowest:.4g}'
+    return f'lowest score {score}' + ('' if threshold is None else f', threshold {threshold:.4g}')
+
+
+def first_of(names: Sequence[str], most: int, joint: str = ' ') -> str:
+    """Return names, of many the first ones: '/a, /b and 3 more'.
+
+    Args:
+        names: to be listed.
+        most: that are.
+        joint: before the `and`.
+    """
+    more = len(names) - most
+    return ', '.join(names[:most]) + (f'{joint}and {more} more' if more > 0 else '')
+
+
+def first_lines(lines: Sequence[str], most: int, others: str = '') -> List[str]:
+    """Return lines, of many the first ones, and one that says how many more there are."""
+    more = len(lines) - most
+    return [*lines[:most], *([f'and {more} more{others}'] if more > 0 else [])]
+
+
+def cell(text: str) -> str:
+    """Return a text that a spreadsheet shows and does not compute: a bag may be called `=1+1`."""
+    return f"'{text}" if text.startswith(_FORMULA) else text
+
+
+def aligned(rows: Sequence[Sequence[str]]) -> List[str]:
+    """Return a line for each row, its cells in columns; all rows have as many, there is one."""
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return ['  '.join(text.ljust(width) for text, width in zip(row, widths)).rstrip()
+            for row in rows]
