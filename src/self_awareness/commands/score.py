@@ -9,10 +9,8 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence
 
-from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, PaperModel, Suspect,
-                            TrainedModel)
+from self_awareness import EVIDENCE_THRESHOLD, EvidenceModel, PaperModel, TrainedModel
 from self_awareness import accepted_file, alarms
-from self_awareness.calibration.heads_and_tails import stopped_before_end
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, load_model, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
@@ -22,13 +20,14 @@ from self_awareness.recordings import RecordingEvents, in_words, unknown
 from self_awareness.reporting import coverage_text
 from self_awareness.reporting.plots import ScorePlot, save_scores
 from self_awareness.reporting.report import neighbours
-from self_awareness.reporting.report.incidents import as_values, incidents, place_of
-from self_awareness.reporting.report.intervals import intervals
+from self_awareness.reporting.report.incidents import (Incident, as_values, incidents,
+                                                       place_of)
+from self_awareness.reporting.report.intervals import SUSPICION, intervals
 from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import check_installed, save_report
 from self_awareness.reporting.report.section import section
 from self_awareness.reporting.report.timeline import timeline
-from self_awareness.reporting.text import cell, of_limit
+from self_awareness.reporting.text import cell
 from self_awareness.results import check_apart, result_bag
 from self_awareness.stamps import SECOND_NS, span
 
@@ -39,7 +38,8 @@ _ALARM = 3  # exit code
 _EPILOG = """\
 Name a part of a recording as BAG@START-END, in s from its first message. Times that are printed
 count from there, too. A suspicion (level WARN) is something abnormal that is too little for an
-alarm, or an event that training never saw. An incident is all alarms and suspicions of one cause.
+alarm, or an event that training never saw. All alarms and suspicions of one cause are an incident:
+a sentence, its longest alarm and whom that names; --json and --report have all of them.
 
 The CSV has one row a window. Score and threshold are empty where there is none. abnormal is 1
 where the score lies below the threshold, also while settling. A name that a spreadsheet would
@@ -145,43 +145,28 @@ def _print(judged: Judged) -> None:
     if recording.steps_of_the_clock:
         print(f'  the clock was set {in_words(recording.steps_of_the_clock)}: the recording is '
               'cut there')
-    for alarm in alarms.in_order(verdicts):
-        for text in _lines(recording, alarm, threshold):
-            print(text)
-    if len(recording.files) > 1:
-        for incident in incidents(judged, intervals(judged), 'incident'):
-            print(f'  {incident.headline} ({place_of(judged, incident)})')
+    for incident in incidents(judged, intervals(judged), 'incident'):
+        cli.print_lines(_lines(judged, incident))
     _print_unknown(recording, judged.by.trained)
 
 
-def _lines(recording: RecordingEvents, alarm: Alarm,
-           threshold: Optional[float]) -> Iterator[str]:
-    def seconds(stamp: int) -> str:
-        return f'{(stamp - recording.origin) / SECOND_NS:.1f}'
-
-    level = 'suspicion: ' if alarm.level == 'WARN' else ''
-    end = '' if alarm.over else ' (to the end of the recording)'
-    yield (f'  {level}{seconds(alarm.begin)} - {seconds(alarm.end)} s{end}, '
-           f'{span(alarm.begin, alarm.end)}: '
-           f'{of_limit(alarm.lowest_score, threshold)}, '
-           f'{alarm.evidence or "what is left of the alarm"}')
-    before_s = stopped_before_end(recording, alarm)
-    if before_s is not None:
-        yield f'    who stopped did so {before_s:.1f} s before the recording ended'
-    if alarm.busy is not None:
-        yield f'    {alarm.busy}'
-    if alarm.silent is not None:
-        yield f'    {alarm.silent}, since {seconds(alarm.silent.since)} s'
-    if not alarm.suspects and alarm.evidence:
-        yield '    no suspect stands out'
-    for rank, suspect in enumerate(alarm.suspects, 1):
-        yield f'    {rank}. {_words(recording, suspect)}'
-    for suspect in alarm.later:
-        yield f'    since {seconds(suspect.since)} s {_words(recording, suspect)}'
-
-
-def _words(recording: RecordingEvents, suspect: Suspect) -> str:
-    return f'{recording.event_types[suspect.id]}: {suspect.reason.words}'
+def _lines(judged: Judged, incident: Incident) -> Iterator[str]:
+    """Return what happened, the longest alarm of it, and whom that names."""
+    place = place_of(judged, incident)
+    yield f'  {incident.headline}' + (f' ({place})' if place else '')
+    main = incident.main
+    level = 'suspicion: ' if incident.level == SUSPICION else ''
+    more = len(incident.intervals) - 1
+    notes = ', '.join(([] if main.cleared else ['to the end of the recording'])
+                      + ([f'and {more} more'] if more else []))
+    yield (f'    {level}{main.start:.1f} - {main.end:.1f} s{notes and f" ({notes})"}, '
+           f'{span(main.of.begin, main.of.end)}: {main.reached}, {main.evidence}')
+    if main.busy is not None and main.of.kind != 'busy machine':
+        yield f'    {main.busy}'
+    for rank, suspect in enumerate(main.suspects, 1):
+        yield f'    {rank}. {suspect.event_type}: {suspect.why}'
+    for suspect in main.later:
+        yield f'    since {suspect.named:.1f} s {suspect.event_type}: {suspect.why}'
 
 
 def _print_unknown(recording: RecordingEvents, trained: TrainedModel) -> None:

@@ -40,7 +40,9 @@ def rows_of(path) -> List[Dict[str, str]]:
 def test_the_alarm_and_its_suspect_are_printed(calibrated: str, dead_laser: str, capsys) -> None:
     assert score.main([dead_laser, '--model', calibrated, *PAPER]) == 0
     out = capsys.readouterr().out
-    interval = re.search(r'^  ([\d.]+) - ([\d.]+) s, (.+) - (.+) UTC: lowest score (\S+), '
+    told, = re.findall(r'^  (/.*)$', out, re.MULTILINE)
+    assert told == '/laser (/scan) fell silent at 11.9 s, and came back at 20.0 s.'
+    interval = re.search(r'^    ([\d.]+) - ([\d.]+) s.*, (.+) - (.+) UTC: lowest score (\S+), '
                          r'threshold (\S+), score$', out, re.MULTILINE)
     start, end = float(interval[1]), float(interval[2])
     assert 12.0 < start < 13.5 and 19.5 < end < 23.0
@@ -65,7 +67,7 @@ def test_silence_up_to_the_end_of_the_recording_is_seen(calibrated: str,
     # All components are dead; only the clock, which is no event, goes on.
     bag = make_bag('end.bag', [*robot(3000.0, 10.0), (3015.0, '/clock_server', '/clock')])
     assert score.main([bag, '--model', calibrated, *PAPER]) == 0
-    assert '- 15.1 s (to the end of the recording)' in capsys.readouterr().out
+    assert '- 15.1 s (to the end of the recording' in capsys.readouterr().out
 
 
 def test_unknown_events_are_counted_and_named(calibrated: str, make_bag: Callable[..., str],
@@ -95,7 +97,7 @@ def test_the_options_of_the_alarm_are_heard(calibrated: str, dead_laser: str, ca
     def alarms(*options: str) -> List[Tuple[float, float]]:
         assert score.main([dead_laser, '--model', calibrated, *PAPER, *options]) == 0
         return [(float(a), float(b)) for a, b in
-                re.findall(r'^  ([\d.]+) - ([\d.]+) s', capsys.readouterr().out, re.MULTILINE)]
+                re.findall(r'^    ([\d.]+) - ([\d.]+) s', capsys.readouterr().out, re.MULTILINE)]
 
     usual = alarms()
     assert len(usual) == 1

@@ -23,7 +23,7 @@ def without_laser(start: float) -> List[Message]:
 
 def alarms(out: str) -> List[Tuple[float, float, str]]:
     """Return start [s], end [s] and evidence of the alarms that were printed."""
-    found = re.findall(r'^  ([\d.]+) - ([\d.]+) s.*: \d+ % of the limit, (.+)$', out,
+    found = re.findall(r'^    ([\d.]+) - ([\d.]+) s.*: \d+ % of the limit, (.+)$', out,
                        re.MULTILINE)
     return [(float(start), float(end), evidence) for start, end, evidence in found]
 
@@ -58,7 +58,7 @@ def test_a_suspicion_is_printed_with_its_reason(
     assert score.main([bag, '--model', evidence_model]) == 0
     out = capsys.readouterr().out
     assert ', alarms: 0, suspicions: 1\n' in out
-    assert re.search(r'^  suspicion: 10\.1 - 12\.\d s, .* UTC: \d+ % of the limit, '
+    assert re.search(r'^    suspicion: 10\.1 - 12\.\d s, .* UTC: \d+ % of the limit, '
                      r'unknown events\n    1\. /new /a std_msgs/String: never seen in training, '
                      r'1 in this window$', out, re.MULTILINE)
 

@@ -7,7 +7,7 @@ import os
 import re
 import subprocess
 from pathlib import Path
-from typing import Any, Callable, Iterable, List, Tuple
+from typing import Any, Callable, Dict, Iterable, List, Tuple
 
 import pytest
 import rosbag
@@ -30,11 +30,12 @@ def dead_laser(make_bag: Callable[..., str]) -> str:
 
 
 @pytest.fixture
-def results(evidence_model: str, dead_laser: str, tmp_path: Path, capsys) -> Tuple[str, str]:
-    """The result bag of it, and what was printed."""
-    path = str(tmp_path / 'out.bag')
-    assert score.main([dead_laser, '--model', evidence_model, '--result-bag', path]) == 0
-    return path, capsys.readouterr().out
+def results(evidence_model: str, dead_laser: str, tmp_path: Path) -> Tuple[str, Dict[str, Any]]:
+    """The result bag of it, and what was said of it as JSON."""
+    path, values = str(tmp_path / 'out.bag'), tmp_path / 'out.json'
+    assert score.main([dead_laser, '--model', evidence_model, '--result-bag', path,
+                       '--json', str(values)]) == 0
+    return path, json.loads(values.read_text())['recordings'][0]
 
 
 def read(path: str, topic: str) -> List[Tuple[Any, Any]]:
@@ -54,11 +55,11 @@ def levels(messages: Iterable[Tuple[Any, Any]], start: float) -> List[Tuple[floa
     return found
 
 
-def test_the_alarms_are_those_that_are_printed(results: Tuple[str, str],
-                                               dead_laser: str) -> None:
-    path, out = results
-    printed = [(float(start), float(end), WARN if suspicion else ERROR) for suspicion, start, end
-               in re.findall(r'^  (suspicion: )?([\d.]+) - ([\d.]+) s', out, re.MULTILINE)]
+def test_the_alarms_are_those_that_are_told(results: Tuple[str, Dict[str, Any]],
+                                            dead_laser: str) -> None:
+    path, said = results
+    printed = [(round(each['begin_s'], 1), round(each['end_s'], 1),
+                {'WARN': WARN, 'ERROR': ERROR}[each['level']]) for each in said['alarms']]
     assert {level for *_, level in printed} == {WARN, ERROR}
     ends = {end for _, end, _ in printed}
     expected = {(start, level) for start, _, level in printed}
@@ -72,7 +73,7 @@ def test_the_alarms_are_those_that_are_printed(results: Tuple[str, str],
     assert raised.message.startswith('abnormal communication (')
 
 
-def test_programs_need_not_parse_words(evidence_model: str, results: Tuple[str, str],
+def test_programs_need_not_parse_words(evidence_model: str, results: Tuple[str, Dict[str, Any]],
                                        dead_laser: str, tmp_path: Path) -> None:
     """The monitor's messages and score --json tell the same, in fields."""
     path, values = results[0], str(tmp_path / 'alarms.json')
@@ -102,7 +103,7 @@ def test_programs_need_not_parse_words(evidence_model: str, results: Tuple[str, 
     assert first['usual'] < first['value'] and first['after'] is None
 
 
-def test_an_alarm_keeps_its_id_until_it_is_over(results: Tuple[str, str]) -> None:
+def test_an_alarm_keeps_its_id_until_it_is_over(results: Tuple[str, Dict[str, Any]]) -> None:
     path, _ = results
     said = [(message.level, message.alarm) for message, _ in read(path, STATUS)]
     stretches = [alarms for level, alarms in
@@ -118,7 +119,8 @@ def test_an_alarm_keeps_its_id_until_it_is_over(results: Tuple[str, str]) -> Non
     assert {alarm for level, alarm in said if level == OK} - set(ids) == {0}
 
 
-def test_times_are_those_of_the_recording(results: Tuple[str, str], dead_laser: str) -> None:
+def test_times_are_those_of_the_recording(results: Tuple[str, Dict[str, Any]],
+                                          dead_laser: str) -> None:
     path, _ = results
     with rosbag.Bag(path) as bag, rosbag.Bag(dead_laser) as recording:
         assert bag.get_compression_info().compression == 'lz4'
@@ -140,7 +142,7 @@ def test_times_are_those_of_the_recording(results: Tuple[str, str], dead_laser: 
 
 
 def test_the_diagnostics_tell_of_the_whole_and_of_every_component(
-        results: Tuple[str, str]) -> None:
+        results: Tuple[str, Dict[str, Any]]) -> None:
     path, _ = results
     diagnostics = read(path, DIAGNOSTICS)
     stamps = [stamp for _, stamp in diagnostics]
@@ -162,7 +164,7 @@ def test_the_diagnostics_tell_of_the_whole_and_of_every_component(
     assert by_name['/battery'].message == 'heard'
 
 
-def test_rostopic_and_rosbag_show_it(results: Tuple[str, str]) -> None:
+def test_rostopic_and_rosbag_show_it(results: Tuple[str, Dict[str, Any]]) -> None:
     path, _ = results
     shown = subprocess.run(['rostopic', 'echo', '-b', path, '-p', '/diagnostics'],
                            stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()

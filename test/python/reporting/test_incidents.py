@@ -141,7 +141,7 @@ def test_a_computer_that_fell_silent_is_the_finding(evidence_model: str, tmp_pat
                      '20.0 s.')
     assert re.fullmatch(told, recording['incidents'][0]['headline'])
     assert re.search(told, report.read_text())
-    assert 'everything on host base fell silent: 2 nodes, since 12.0 s' in capsys.readouterr().out
+    assert re.search(told, capsys.readouterr().out)
     assert score.main([bag, '--model', evidence_model, '--json', str(values)]) == 0
     recording, = json.loads(values.read_text())['recordings']
     assert 'base' not in recording['incidents'][0]['headline'], 'a bag does not say it'

@@ -49,7 +49,7 @@ def test_score_writes_a_report_of_each_recording(evidence_model: str, make_bag, 
     assert '/laser (/scan) fell silent at 12.0 s, and came back at 20.0 s.' in page
     assert 'Nothing abnormal.' in page
     # The report and the text agree.
-    start, end = re.findall(r'^  ([\d.]+) - ([\d.]+) s, ', capsys.readouterr().out, re.M)[0]
+    start, end = re.findall(r'^    ([\d.]+) - ([\d.]+) s', capsys.readouterr().out, re.M)[0]
     assert f'{start} s – {end} s' in page
     interval, = [each for each in data_of(page)['sections'][0]['incidents'].values()
                  if [f'{time:.1f}' for time in each['range']] == [start, end]]

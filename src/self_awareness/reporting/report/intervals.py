@@ -25,7 +25,9 @@ _CLEARLY_LONGER = 3
 _SHORT = {'slow': 'sends too seldom', 'fast': 'sends too often',
           'late': 'paused for too long', 'out of order': 'sends at an irregular pace',
           'never came': 'was not heard', 'stranger': 'is new',
-          'not subscribed': 'does not subscribe'}
+          'not subscribed': 'does not subscribe', 'stale': 'sends what is too old',
+          'lossy': 'loses messages', 'stuck': 'sends the same again and again',
+          'other size': 'sends messages of another size'}
 _SHORT_OF_ANSWERS = {'died': 'does not answer', 'late': 'answers late', 'early': 'answers early',
                      'out of order': 'comes at unusual delays'}
 
