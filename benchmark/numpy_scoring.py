@@ -12,7 +12,7 @@ from typing import Tuple, Union
 
 import numpy as np
 
-from self_awareness import DEFAULT_WINDOW, EncodingRules, EventType, PaperModel, Training
+from self_awareness import EventType, Learner, PaperModel
 
 SIZES = (15, 60, 150, 300, 1000)
 BIN_SIZE = 10_000_000  # [ns]
@@ -131,10 +131,10 @@ class NumpyEvidence:
 
 def check(detector: NumpyDetector, types: int, stamps: np.ndarray, ids: np.ndarray) -> None:
     """Raise AssertionError unless the sums equal those of the package."""
-    training = Training(EncodingRules(), BIN_SIZE, DEFAULT_WINDOW, BINS - 1, paper=True)
+    learner = Learner(bin_size=BIN_SIZE, horizon_bins=BINS - 1, paper=True)
     kinds = [EventType('', f'/topic_{kind}', 'T') for kind in range(types)]
-    training.add_events(kinds, stamps, ids)
-    trained = training.model()
+    learner.count(kinds, stamps, ids)
+    trained = learner.model()
     here = {kind.scope: index for index, kind in enumerate(trained.event_types)}
     mapped = np.array([here[kinds[kind].scope] for kind in ids], dtype=np.uint32)
     expected = PaperModel(trained).score_events(stamps, mapped)

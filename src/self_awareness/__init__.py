@@ -68,7 +68,6 @@ from self_awareness._core import (  # noqa: F401
     Suspect,
     Track,
     TrainedModel,
-    Training,
     Tuning,
     TuningNumber,
     UnknownEvents,

@@ -7,9 +7,8 @@ from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
 import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, Alarm, DetectorParameters,
-                            EncodingRules, EventType, EvidenceModel, Learner, PaperModel,
-                            Recording, TrainedModel, Training, Tuning, Verdicts,
-                            judge_by_evidence)
+                            EventType, EvidenceModel, Learner, PaperModel, TrainedModel, Tuning,
+                            Verdicts, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
 from self_awareness.judging import EVIDENCE, PAPER
@@ -149,17 +148,12 @@ def _lasting(recording: WindowedEvents) -> Set[Tuple[str, str]]:
 
 def counted(recordings: Sequence[WindowedEvents], detector: str = EVIDENCE) -> TrainedModel:
     """Return what a detector counts in recordings. Counts add up; watch() what they come to."""
-    training = Training(EncodingRules(), window=DEFAULT_WINDOW, evidence=detector == EVIDENCE,
-                        paper=detector == PAPER)
+    learner = Learner(evidence=detector == EVIDENCE, paper=detector == PAPER)
     for recording in recordings:
-        said = Recording()
-        said.fingerprint = recording.fingerprint
-        said.robot = recording.robot
-        said.start, said.end = int(recording.stamps[0]), int(recording.stamps[-1])
-        said.events = len(recording.stamps)
-        training.add_events(recording.event_types, recording.stamps, recording.ids, said,
-                            attributes=recording.attributes)
-    return training.model(watch=False)
+        learner.count(recording.event_types, recording.stamps, recording.ids,
+                      recording.fingerprint, robot=recording.robot,
+                      attributes=recording.attributes)
+    return learner.model(watch=False)
 
 
 def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:

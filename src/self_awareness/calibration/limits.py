@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, field
-from typing import Any, Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Iterable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -45,8 +45,7 @@ class HeldOut:
 
     def judge(self, _: TrainedModel, calibrator: Calibrator) -> None:
         """Let it be judged."""
-        calibrator.add_held_out(self.stamps, self.ids, self.robot_start, list(self.clock_steps),
-                                self.robot, self.attributes, list(self.waiting))
+        _add(calibrator, self, self.ids, None)
 
 
 @dataclass(frozen=True)
@@ -82,9 +81,14 @@ class TrainedOn:
         else:
             known = {kind: index for index, kind in enumerate(trained.event_types)}
             ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
-        calibrator.add_trained_on(events.stamps, ids, self.fingerprint, events.robot_start,
-                                  list(events.clock_steps), events.robot,
-                                  events.attributes, list(events.waiting))
+        _add(calibrator, events, ids, self.fingerprint)
+
+
+def _add(calibrator: Calibrator, recording: Union[HeldOut, RecordingEvents], ids: np.ndarray,
+         fingerprint: Optional[int]) -> None:
+    calibrator.add(recording.stamps, ids, fingerprint, recording.robot_start,
+                   list(recording.clock_steps), recording.robot, recording.attributes,
+                   list(recording.waiting))
 
 
 def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,

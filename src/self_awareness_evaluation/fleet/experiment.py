@@ -136,12 +136,9 @@ class _Start:
     def judge(self, trained: TrainedModel, calibrator: Calibrator) -> None:
         """Let it be judged, to find limits (limits.find)."""
         recording = self.recording().encoded(trained.event_types)
-        if self.held_out:
-            calibrator.add_held_out(recording.stamps, recording.ids, robot=recording.robot,
-                                    attributes=recording.attributes)
-        else:
-            calibrator.add_trained_on(recording.stamps, recording.ids, recording.fingerprint,
-                                      robot=recording.robot, attributes=recording.attributes)
+        calibrator.add(recording.stamps, recording.ids,
+                       None if self.held_out else recording.fingerprint, robot=recording.robot,
+                       attributes=recording.attributes)
 
 
 @dataclass(frozen=True)

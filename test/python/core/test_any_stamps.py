@@ -15,9 +15,8 @@ from hypothesis import strategies as st
 from reference import Reference
 from reference_evidence import BINS, Counts, is_mode, lower_edge, stalls_of
 
-from self_awareness import (Calibrator, DetectorParameters, EncodingRules, EventType,
-                            EvidenceCounts, EvidenceModel, PaperModel, Recording, TrainedModel,
-                            Training, Verdicts)
+from self_awareness import (Calibrator, DetectorParameters, EventType, EvidenceCounts,
+                            EvidenceModel, Learner, PaperModel, TrainedModel, Verdicts)
 
 WINDOW = 100 * MS
 BIN = 10 * MS
@@ -45,16 +44,10 @@ def arrays(events: Sequence[Event]) -> Tuple[np.ndarray, np.ndarray]:
 def trained_on(all_events: Sequence[Sequence[Event]],
                fingerprints: Sequence[int] = ()) -> TrainedModel:
     """Train both detectors on recordings; those with a fingerprint belong to a half by it."""
-    training = Training(EncodingRules(), BIN, WINDOW, paper=True)
+    learner = Learner(window=WINDOW, bin_size=BIN, paper=True)
     for number, events in enumerate(all_events):
-        recording = None
-        if fingerprints:
-            recording = Recording()
-            recording.fingerprint = fingerprints[number]
-            stamps = sorted(stamp for stamp, _ in events)
-            recording.start, recording.end = stamps[0], stamps[-1]
-        training.add_events(TYPES, *arrays(events), recording)
-    return training.model()
+        learner.count(TYPES, *arrays(events), fingerprints[number] if fingerprints else 0)
+    return learner.model()
 
 
 def ids_of(trained: TrainedModel) -> Dict[str, int]:
@@ -193,8 +186,8 @@ def test_limits_are_numbers(all_events: List[List[Event]], normal: List[List[Eve
     calibrator = Calibrator(trained, SETTLE)
     ids = ids_of(trained)
     for events in normal:
-        calibrator.add_held_out(arrays(events)[0],
-                                np.array([ids.get(kind, len(ids)) for _, kind in events]))
+        calibrator.add(arrays(events)[0],
+                       np.array([ids.get(kind, len(ids)) for _, kind in events]))
     try:
         found = calibrator.find(0.5)
     except ValueError as refused:
