@@ -93,13 +93,13 @@ TEST(LearnedCounts, AddUpToThoseOfOneLearner) {
     }
     Model sum = countsOf(counting(true, false), first);
     const Model other = countsOf(counting(true, false), second);
-    evidence::merge(sum.evidence, sum.onlyHalf(), other.evidence, other.onlyHalf());
+    sum.add(other);
     EXPECT_TRUE(sum.evidence == threeRecordings(counting(true, false)).evidence) << in_first;
   }
   // Recordings of one half stay in two parts.
   Model sum = countsOf(counting(true, false), {10});
   const Model other = countsOf(counting(true, false), {40});
-  evidence::merge(sum.evidence, sum.onlyHalf(), other.evidence, other.onlyHalf());
+  sum.add(other);
   EXPECT_TRUE(sum.evidence == countsOf(counting(true, false), {10, 40}).evidence);
   EXPECT_EQ(eventsOf(sum.evidence[0]), 25U);
 }

@@ -96,9 +96,9 @@ class Calibrator {
 /// Learns a model from recordings of normal operation, one after the other: it counts, and a model
 /// computes the rest from the counts. They do not depend on the order of the recordings, and add
 /// up: what several learners count, in threads, processes or on a cluster, is in sum what one of
-/// them counts (evidence::merge(), paper::DelayStatistics::merge(); docs/method.md, sections 2.1
-/// and 3.1). Limits need a second pass over the recordings: learn() does it with what is in
-/// memory; after counts(), it is for a Calibrator.
+/// them counts (Model::add(); docs/method.md, sections 2.1 and 3.1). Limits need a second pass
+/// over the recordings: learn() does it with what is in memory; after counts(), it is for a
+/// Calibrator.
 class Learner {
  public:
   /// What is counted, and how.
