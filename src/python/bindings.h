@@ -202,7 +202,9 @@ inline std::vector<std::pair<std::int64_t, std::uint32_t>> delaysOf(
 void bindOutputFiles(py::module& module);
 /// Binds the writing of event logs (event_log_bindings.cpp).
 void bindEventLogs(py::module& module);
-/// Binds the encoding, and the reading of bags and event logs (recording_bindings.cpp).
+/// Binds event types, and how messages become events (encoding_bindings.cpp).
+void bindEncoding(py::module& module);
+/// Binds the reading of bags and event logs (recording_bindings.cpp).
 void bindRecordings(py::module& module);
 /// Binds what files say of their versions (file_version_bindings.cpp).
 void bindFileVersions(py::module& module);

@@ -152,7 +152,6 @@ void bindVerdicts(py::module& m) {
           [](Detector::Parameters& self, std::int64_t ns) { self.persistence.hold_time = ns; },
           "[ns]")
       .def_readwrite("settle_time", &Detector::Parameters::settle_time, "[ns]")
-      .def_readwrite("silence_is_abnormal", &Detector::Parameters::silence_is_abnormal)
       .def_readwrite("unknown", &Detector::Parameters::unknown)
       .def("validate", &Detector::Parameters::validate);
 
@@ -212,7 +211,6 @@ void bindVerdicts(py::module& m) {
           "h_ij [bit], [from, to]")
       .def("weight", &core::paper::Model::weight, py::arg("from_id"), py::arg("to_id"),
            "w_ij once all event types were seen")
-      .def("log_survival", &core::paper::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def(
           "score_events",
           [](const std::shared_ptr<core::paper::Model>& self, const Stamps& stamps,

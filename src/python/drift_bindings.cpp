@@ -25,16 +25,9 @@ void bindDrift(py::module& m) {
   py::class_<Drift>(m, "Drift",
                     "Tells that what is heard drifts towards the limits: a test whose false\n"
                     "alarms over a lifetime are bounded (docs/learn_more.md).")
-      .def(py::init<std::size_t>(), py::arg("components"))
-      .def("add", &Drift::add, py::arg("shares"),
-           "Takes in the next sample: the largest share of its limit of each component.\n"
-           "ValueError if their number is another one, or one is not finite or below 0.")
       .def("component", &Drift::component, py::arg("number"))
       .def_property_readonly("samples", &Drift::samples, "number of samples so far")
-      .def_property_readonly("needed", &Drift::needed, "evidence from which on it is told")
-      .def_property_readonly_static(
-          "FALSE_ALARMS", [](const py::object&) { return Drift::kFalseAlarms; },
-          "probability that a robot in which nothing changes is ever told to drift");
+      .def_property_readonly("needed", &Drift::needed, "evidence from which on it is told");
   py::class_<DriftSamples>(m, "DriftSamples",
                            "What is one sample of a Drift: all that was normal in a start of the\n"
                            "robot, or in a day of one.")
@@ -48,7 +41,9 @@ void bindDrift(py::module& m) {
           py::arg("begin"), py::arg("end"), py::arg("robot_start"), py::arg("shares"),
           "Takes in the next time that was normal [ns]. robot_start: the same for all of a start\n"
           "of the robot; 0: not known, then a start ends with a pause of more than a minute.\n"
-          "shares: as Drift.add().")
+          "shares: the largest share of its limit, of each component; ValueError if their number "
+          "is\n"
+          "another one, or one is not finite or below 0.")
       .def_property_readonly("drift", &DriftSamples::drift, "what they say");
 }
 

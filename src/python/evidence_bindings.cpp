@@ -112,7 +112,6 @@ void bindEvidence(py::module& m) {
           "counts of the delays in training, of what is watched: list of (shortest delay [ns],\n"
           "count) by bin; zeros for other pairs")
       .def("overdue", &evidence::Model::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
-      .def("log_survival", &evidence::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),
            py::arg("limits") = py::none(),
            "Evidence at the end of every window of a recording: float64 [windows, tracks].\n"

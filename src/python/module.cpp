@@ -5,6 +5,7 @@
 
 PYBIND11_MODULE(_core, m) {
   m.doc() = "C++ core of self_awareness: the one implementation of the method.";
+  self_awareness::python::bindEncoding(m);
   self_awareness::python::bindRecordings(m);
   self_awareness::python::bindOutputFiles(m);
   self_awareness::python::bindEventLogs(m);

@@ -313,7 +313,7 @@ def _print_pair(model: TrainedModel, first: int, second: int) -> None:
     print(f'to the current       {model.event_types[second]}')
     width = max(10, shutil.get_terminal_size().columns - 40)
     if model.detectors == EVIDENCE:
-        _print_lines(histogram_text.draw_bins(model.delays(first, second), width))
+        _print_lines(histogram_text.draw_bins(EvidenceCounts(model).delays(first, second), width))
         return
     counts = model.histogram(first, second)
     computed = PaperModel(model)
