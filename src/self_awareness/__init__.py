@@ -12,7 +12,7 @@ parts, which the programs (`self_awareness.commands`) are made of.
 """
 from typing import TYPE_CHECKING, Any
 
-from self_awareness._core import *  # noqa: F401,F403  its names are those of the package
+from self_awareness._core import *  # noqa: F401,F403
 
 if TYPE_CHECKING:
     from self_awareness.library import Alarms, Model, learn, load  # noqa: F401

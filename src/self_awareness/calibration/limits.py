@@ -54,7 +54,6 @@ class TrainedOn:
 
     Args:
         part: the bag, or the part of it.
-        fingerprint: of the whole bag.
         events: of the part, by ids of their own; None: read when they are needed, as the memory
             may not hold those of all recordings.
         silences: the longest one of every event type.
@@ -63,7 +62,6 @@ class TrainedOn:
     """
 
     part: BagPart
-    fingerprint: int
     events: Optional[RecordingEvents] = None
     silences: Silences = field(default_factory=dict)
     heads_and_tails: HeadsAndTails = field(default_factory=dict)
@@ -81,7 +79,7 @@ class TrainedOn:
         else:
             known = {kind: index for index, kind in enumerate(trained.event_types)}
             ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
-        _add(calibrator, events, ids, self.fingerprint)
+        _add(calibrator, events, ids, events.fingerprint)
 
 
 def _add(calibrator: Calibrator, recording: Union[HeldOut, RecordingEvents], ids: np.ndarray,
@@ -121,26 +119,6 @@ def _ids(trained: TrainedModel, recording: RecordingEvents) -> np.ndarray:
              and recording.event_types[index].tells_mode]
     return (np.where(np.isin(recording.ids, other), OTHER_MODE, recording.ids).astype(np.uint32)
             if other else recording.ids)
-
-
-def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_time: int,
-              budget: float, workers: Optional[Workers] = None) -> Calibration:
-    """Return limits by recordings of the training, each judged by the half it does not belong to.
-
-    Args:
-        trained: the model; its last recordings are those of trained_on.
-        trained_on: all recordings of the training, or the last.
-        settle_time: left out at the start of every recording [ns].
-        budget: false alarms an hour that the limits allow.
-        workers: who does the work; None: this process.
-
-    Raises:
-        BagError: a recording cannot be read any more.
-        TooLittleError: the recordings are too short.
-    """
-    calibration, = find(trained, settle_time, [budget], trained_on, workers, keep_findings=True)
-    calibration.recordings = trained.recordings[-len(trained_on):]
-    return calibration
 
 
 def find(trained: TrainedModel, settle_time: int, budgets: Sequence[float], tasks: Sequence[Any],

@@ -8,8 +8,8 @@ import shutil
 from collections import Counter
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import (BagError, EventType, ModelFileError, PaperModel, ResultBag,
-                            TrainedModel, recordings_in_event_log)
+from self_awareness import (BagError, EventType, EvidenceCounts, ModelFileError, PaperModel,
+                            ResultBag, TrainedModel, recordings_in_event_log)
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.learning.age import age_of, logs_of

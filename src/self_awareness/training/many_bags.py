@@ -110,8 +110,9 @@ def preliminary_limits(trained: Trained, workers: Optional[Workers] = None) -> C
         BagError: a recording cannot be read any more.
         TooLittleError: the recordings are too short.
     """
-    found = limits.cross_fit(trained.model, trained.trained_on, DetectorParameters().settle_time,
-                             limits.BUDGET, workers)
+    found, = limits.find(trained.model, DetectorParameters().settle_time, [limits.BUDGET],
+                         trained.trained_on, workers, keep_findings=True)
+    found.recordings = trained.model.recordings[-len(trained.trained_on):]
     trained.model.calibration = found
     return found
 
@@ -282,7 +283,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
     lines += [f'{part}: warning: {reason}; it is left out' for reason in summary.left_out]
     if events.copied and encoding.source != 'none':
         lines.append(f'{part}: {_COPIED}')
-    trained_on = TrainedOn(part, events.fingerprint, events, holes.longest_silences(events),
+    trained_on = TrainedOn(part, events, holes.longest_silences(events),
                            heads_and_tails.find(events), begin)
     return _Sum(len(events.stamps), model, [trained_on], lines)
 
