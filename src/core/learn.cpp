@@ -200,9 +200,8 @@ void Learner::count(const Recording& recording) {
 
 void Learner::startRecording(const Recording& recording, std::uint64_t fingerprint) {
   trainers_->paper.startRecording();
-  trainers_->evidence.startRecording(
-      {recording.before.empty() ? std::nullopt : std::optional(recording.before.front().stamp),
-       recording.robot_start, recording.robot, stallsOf(recording, parameters_.tuning)});
+  trainers_->evidence.startRecording({recording.since, recording.robot_start, recording.robot,
+                                      stallsOf(recording, parameters_.tuning)});
   const std::size_t half = evidence::halfOf(fingerprint);
   if (model_.recordings.empty()) {
     only_half_ = half;

@@ -95,6 +95,9 @@ class Learner : public core::Learner {
       for (const core::EventType& type : types) {
         intern(type);  // first, so that ids are in the order of the part
       }
+      if (before->first.size() > 0) {
+        recording.since = before->first.at(0);
+      }
       forEachEvent(before->first, before->second, [&](const core::Event& event) {
         if (event.id < types.size()) {
           recording.before.push_back({event.stamp, intern(types[event.id])});

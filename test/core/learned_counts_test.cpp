@@ -170,6 +170,46 @@ TEST(LearnedCounts, RecordingsOfOneHalfAreCutInTwo) {
   EXPECT_THROW(learner.count(recording(0, 10)), std::logic_error);
 }
 
+TEST(LearnedCounts, OfWhatComesBeforeOnlyTheFirstTimesCount) {
+  Learner learner;
+  learner.intern(kType);
+  learner.intern(kOther);
+  Recording part = recording(20 * kPeriod, 10, 4);
+  part.since = 3 * kPeriod;
+  part.before = {{5 * kPeriod, 1}, {6 * kPeriod, 1}};
+  learner.count(part);
+  const Model counts = learner.counts();
+  EXPECT_EQ(eventsOf(counts.evidence[0]) + eventsOf(counts.evidence[1]), 10U);
+  const auto& halves = counts.evidence;
+  const auto& recordings = (halves[0].recordings().empty() ? halves[1] : halves[0]).recordings();
+  ASSERT_EQ(recordings.size(), 1U);
+  EXPECT_EQ(recordings[0].firsts, (std::vector<std::int64_t>{17 * kPeriod, 2 * kPeriod}));
+  EXPECT_EQ(counts.recordings[0].start, 20 * kPeriod);
+}
+
+TEST(LearnedCounts, WhatDoesNotFitIsNotAddedAndSaysWhy) {
+  Learner::Parameters parameters = counting(true, false);
+  Model sum = countsOf(parameters, {10});
+  const Model whole = countsOf(parameters, {10, 20});
+  parameters.counting.window *= 2;
+  EXPECT_THROW(sum.add(countsOf(parameters, {20})), std::invalid_argument);
+  EXPECT_THROW(sum.add(countsOf(counting(true, true), {20})), std::invalid_argument);
+  Model part = countsOf(counting(true, false), {20});
+  part.graph.connect("/a", "/x", "/b");
+  Model watched = part;
+  watched.watch();
+  watched.dropCounts();
+  EXPECT_THROW(sum.add(watched), std::invalid_argument);
+  ASSERT_EQ(sum.recordings.size(), 1U);
+  sum.watch();
+  sum.add(part);
+  EXPECT_TRUE(sum.evidence == whole.evidence);
+  EXPECT_TRUE(sum.statistics == whole.statistics);
+  EXPECT_EQ(sum.recordings.size(), 2U);
+  EXPECT_EQ(sum.graph.edges().size(), 1U);
+  EXPECT_FALSE(sum.isWatched()) << "it was chosen by fewer counts";
+}
+
 TEST(CrossFit, AHalfIsJudgedByWhatTheOtherSays) {
   Learner learner(counting(true, false), {});
   learner.intern(kType);

@@ -32,8 +32,10 @@ struct Recording {
   ClockSteps clock_steps{};
   /// How the machine was, one stretch of time after the other; empty: not known.
   std::vector<Waiting> waiting{};
-  /// What it holds before its events, which is not learned from: it only says when types come
-  /// first. Empty: it begins with its events.
+  /// When it began [ns], if that was before its events; none: with the first one.
+  std::optional<std::int64_t> since{};
+  /// What it holds from then on before its events, and is not learned from: it only says when
+  /// their types come first.
   std::vector<Event> before{};
 };
 
