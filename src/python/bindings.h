@@ -17,7 +17,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/clock_steps.h"
@@ -187,17 +186,6 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
   detector.finish();
 }
 
-/// Delays of a pair of event types: shortest delay [ns] and count by bin.
-inline std::vector<std::pair<std::int64_t, std::uint32_t>> delaysOf(
-    const core::evidence::Statistics& statistics, core::EventId from, core::EventId to) {
-  const core::evidence::DelayHistogram& counts = statistics.delays(from, to);
-  std::vector<std::pair<std::int64_t, std::uint32_t>> delays;
-  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
-    delays.emplace_back(core::evidence::log_bins::lowerEdge(bin), counts[bin]);
-  }
-  return delays;
-}
-
 /// Binds files that are written whole or not at all (output_file_bindings.cpp).
 void bindOutputFiles(py::module& module);
 /// Binds the writing of event logs (event_log_bindings.cpp).
@@ -212,8 +200,6 @@ void bindFileVersions(py::module& module);
 void bindModel(py::module& module);
 /// Binds the numbers of the method (tuning_bindings.cpp).
 void bindTuning(py::module& module);
-/// Binds what a training counted (counts_bindings.cpp).
-void bindCounts(py::module& module);
 /// Binds alarms and their suspects (alarm_bindings.cpp).
 void bindAlarms(py::module& module);
 void bindIncidents(py::module& module);

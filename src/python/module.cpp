@@ -12,7 +12,6 @@ PYBIND11_MODULE(_core, m) {
   self_awareness::python::bindFileVersions(m);
   self_awareness::python::bindModel(m);
   self_awareness::python::bindTuning(m);
-  self_awareness::python::bindCounts(m);
   self_awareness::python::bindEvidence(m);
   self_awareness::python::bindLearning(m);
   self_awareness::python::bindResults(m);

@@ -8,7 +8,7 @@ import shutil
 from collections import Counter
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import (BagError, EventType, EvidenceCounts, ModelFileError, PaperModel,
+from self_awareness import (BagError, EventType, EvidenceModel, ModelFileError, PaperModel,
                             ResultBag, TrainedModel, recordings_in_event_log)
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
@@ -313,7 +313,8 @@ def _print_pair(model: TrainedModel, first: int, second: int) -> None:
     print(f'to the current       {model.event_types[second]}')
     width = max(10, shutil.get_terminal_size().columns - 40)
     if model.detectors == EVIDENCE:
-        _print_lines(histogram_text.draw_bins(EvidenceCounts(model).delays(first, second), width))
+        delays = EvidenceModel.of_all_pairs(model).delays(first, second)
+        _print_lines(histogram_text.draw_bins(delays, width))
         return
     counts = model.histogram(first, second)
     computed = PaperModel(model)

@@ -8,7 +8,7 @@ from typing import Dict, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (BagError, EventType, EvidenceCounts, EvidenceModel, TrainedModel,
+from self_awareness import (BagError, EventType, EvidenceModel, TrainedModel,
                             recordings, recordings_in_event_log)
 from self_awareness.judging import EVIDENCE
 from self_awareness.parts import BagPart, Named, look
@@ -50,14 +50,14 @@ class Side:
     ends: Dict[Kind, End] = field(default_factory=dict)
 
     @cached_property
-    def halves(self) -> Tuple[EvidenceCounts, EvidenceCounts]:
+    def halves(self) -> Tuple[EvidenceModel, EvidenceModel]:
         """Return the counts of the two halves."""
-        return EvidenceCounts(self.model, 0), EvidenceCounts(self.model, 1)
+        return EvidenceModel.of_all_pairs(self.model, 0), EvidenceModel.of_all_pairs(self.model, 1)
 
     @cached_property
-    def all(self) -> EvidenceCounts:
+    def all(self) -> EvidenceModel:
         """Return the counts of both halves."""
-        return EvidenceCounts(self.model)
+        return EvidenceModel.of_all_pairs(self.model)
 
     @cached_property
     def ids(self) -> Dict[Kind, int]:

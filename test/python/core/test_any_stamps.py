@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from reference import Reference
 from reference_evidence import BINS, Counts, is_mode, lower_edge, stalls_of
 
-from self_awareness import (Calibrator, DetectorParameters, EventType, EvidenceCounts,
-                            EvidenceModel, Learner, PaperModel, TrainedModel, Verdicts)
+from self_awareness import (Calibrator, DetectorParameters, EventType, EvidenceModel, Learner,
+                            PaperModel, TrainedModel, Verdicts)
 
 WINDOW = 100 * MS
 BIN = 10 * MS
@@ -104,7 +104,7 @@ def check_counts(all_events: List[List[Event]]) -> None:
     parts = [piece for events in all_events for piece in pieces(events)]
     reference = Counts(parts, list(ids), WINDOW,
                        [stalls for events in all_events for stalls in stalls_of(pieces(events))])
-    found = EvidenceCounts(trained)
+    found = EvidenceModel.of_all_pairs(trained)
     assert found.duration == sum(seen.end - seen.start for seen in reference.recordings)
     for i in ids:
         assert found.events(ids[i]) == sum(seen.events[i] for seen in reference.recordings)
@@ -216,8 +216,8 @@ def test_models_add_up_to_that_of_one_training(first: List[List[Event]],
         for j in ids:
             pair, other_pair = (ids[i], ids[j]), (other_ids[i], other_ids[j])
             assert merged.histogram(*other_pair) == together.histogram(*pair)
-            assert (EvidenceCounts(merged).delays(*other_pair)
-                    == EvidenceCounts(together).delays(*pair))
+            assert (EvidenceModel.of_all_pairs(merged).delays(*other_pair)
+                    == EvidenceModel.of_all_pairs(together).delays(*pair))
 
 
 @examples
@@ -241,7 +241,7 @@ def counted(trained: TrainedModel) -> Dict[object, object]:
     ids = ids_of(trained)
     found: Dict[object, object] = {}
     for half in (0, 1, None):
-        counts = EvidenceCounts(trained, half)
+        counts = EvidenceModel.of_all_pairs(trained, half)
         found[half] = counts.duration
         for i in ids:
             found[half, i] = (counts.events(ids[i]), counts.rate_variance(ids[i]))

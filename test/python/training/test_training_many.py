@@ -11,7 +11,7 @@ import pytest
 import rosbag
 from conftest import jittery_robot, learned, robot, train_tuned, write_bag
 
-from self_awareness import (EncodingRules, EventType, EvidenceCounts, EvidenceModel, Learner,
+from self_awareness import (EncodingRules, EventType, EvidenceModel, Learner,
                             TrainedModel, Tuning, read_events)
 from self_awareness.commands import train
 from self_awareness.training.robot_graph import RobotGraph
@@ -76,7 +76,8 @@ def test_a_single_bag_is_cut_in_two(bags: List[str], jobs: str, tmp_path: Path) 
     learner.count(events.event_types, events.stamps, events.ids, model.recordings[0].fingerprint,
                   attributes=events.attributes, bag=model.recordings[0].bag)
     for half in (0, 1):
-        counted = sum(EvidenceCounts(model, half).events(k) for k in range(len(model.event_types)))
+        counts = EvidenceModel.of_all_pairs(model, half)
+        counted = sum(counts.events(k) for k in range(len(model.event_types)))
         assert 0.4 < counted / len(events.stamps) < 0.6
     assert learned(model) == learned(learner.model())
 
