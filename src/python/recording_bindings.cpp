@@ -146,7 +146,6 @@ void bindBags(py::module& m) {
   py::register_exception<ros1::BagError>(m, "BagError", PyExc_RuntimeError);
 
   py::class_<ros1::BagSummary>(m, "BagSummary", "What is known of a recording without its events.")
-      .def_readonly("path", &ros1::BagSummary::path)
       .def_readonly("bag", &ros1::BagSummary::bag,
                     "file name; of an event log, that of the bag that it was made of")
       .def_property_readonly(
