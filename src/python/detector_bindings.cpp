@@ -194,8 +194,6 @@ void bindVerdicts(py::module& m) {
              return std::make_shared<core::paper::Model>(trained.statistics);
            }),
            py::arg("trained"))
-      .def("probability", &core::paper::Model::probability, py::arg("from_id"), py::arg("to_id"),
-           py::arg("delay"), "P_ij of a delay [ns]")
       .def_property_readonly(
           "entropies",
           [](const core::paper::Model& self) {
