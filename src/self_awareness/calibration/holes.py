@@ -10,36 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-import numpy as np
-
-from self_awareness import Coverage, EventType, TrainedModel
+from self_awareness import Coverage, TrainedModel
 from self_awareness.calibration import heads_and_tails
+from self_awareness.calibration.heads_and_tails import Key, Silence, Silences, key_of
 from self_awareness.parts import BagPart
-from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
 _FEWEST_OTHERS = 2
 _SHORTEST_PART_S = 5.0
-
-Key = Tuple[str, str, str]
-"""Source, scope and type of an event type."""
-
-
-@dataclass(frozen=True)
-class Silence:
-    """The longest time without an event of a type in a recording.
-
-    Args:
-        begin_s: from the recording's first message [s].
-        length_s: of it [s].
-    """
-
-    begin_s: float
-    length_s: float
-
-
-Silences = Mapping[Key, Silence]
-"""Those of a recording, of what came often in it."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +27,7 @@ class Hole:
     Args:
         part: the recording.
         key: the event type.
-        silence: see above.
+        silence: of the event type, the longest of the recording.
         others_s: the longest silence of all other recordings [s].
     """
 
@@ -64,20 +42,9 @@ class Hole:
         return self.key[0] or self.key[1]
 
 
-def longest_silences(recording: RecordingEvents) -> Silences:
-    """Return the longest silence of every event type that came often."""
-    found: Dict[Key, Silence] = {}
-    for kind, stamps in heads_and_tails.often(recording):
-        gaps = np.diff(stamps)
-        longest = int(np.argmax(gaps))
-        found[_key(kind)] = Silence((stamps[longest] - recording.origin) / SECOND_NS,
-                                    gaps[longest] / SECOND_NS)
-    return found
-
-
 def known_silences(trained: TrainedModel) -> Dict[Key, float]:
     """Return the longest gap that the training showed of every event type that is judged [s]."""
-    return {_key(each): trained.longest_gap(index) / SECOND_NS
+    return {key_of(each): trained.longest_gap(index) / SECOND_NS
             for index, each in enumerate(trained.event_types)
             if trained.gaps(index) >= trained.fewest_gaps}
 
@@ -168,7 +135,3 @@ def _pieces(part: BagPart, silences: Sequence[Silence]) -> List[BagPart]:
     if not silences or part.end is None or part.end - (part.start or 0.0) >= _SHORTEST_PART_S:
         pieces.append(part)
     return pieces
-
-
-def _key(event_type: EventType) -> Key:
-    return event_type.source, event_type.scope, event_type.type

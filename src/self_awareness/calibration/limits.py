@@ -13,8 +13,7 @@ import numpy as np
 
 from self_awareness import (OTHER_MODE, Calibration, Calibrator, LimitFindings, TrainedModel,
                             Waiting, recordings)
-from self_awareness.calibration.heads_and_tails import HeadsAndTails, StartUp
-from self_awareness.calibration.holes import Silences
+from self_awareness.calibration.heads_and_tails import Silences, StartUp
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
 from self_awareness.workers import InProcess, Workers
@@ -57,14 +56,12 @@ class TrainedOn:
         events: of the part, by ids of their own; None: read when they are needed, as the memory
             may not hold those of all recordings.
         silences: the longest one of every event type.
-        heads_and_tails: of every component.
         start_up: that was left out before it; None: nothing was.
     """
 
     part: BagPart
     events: Optional[RecordingEvents] = None
     silences: Silences = field(default_factory=dict)
-    heads_and_tails: HeadsAndTails = field(default_factory=dict)
     start_up: Optional[StartUp] = None
 
     def __str__(self) -> str:

@@ -17,7 +17,7 @@ import numpy as np
 from self_awareness import (BagError, BagSummary, Calibration, DetectorParameters, EncodingRules,
                             Recording, TrainedModel, lasting_subscriptions, progress, read_events,
                             recordings)
-from self_awareness.calibration import heads_and_tails, holes, limits
+from self_awareness.calibration import heads_and_tails, limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import PAPER
 from self_awareness.parts import BagPart
@@ -283,8 +283,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
     lines += [f'{part}: warning: {reason}; it is left out' for reason in summary.left_out]
     if events.copied and encoding.source != 'none':
         lines.append(f'{part}: {_COPIED}')
-    trained_on = TrainedOn(part, events, holes.longest_silences(events),
-                           heads_and_tails.find(events), begin)
+    trained_on = TrainedOn(part, events, heads_and_tails.silences(events), begin)
     return _Sum(len(events.stamps), model, [trained_on], lines)
 
 
