@@ -107,25 +107,17 @@ class Silence:
     tail_s: float = 0.0
 
 
-Key = Tuple[str, str, str]
-"""Source, scope and type of an event type."""
-
-Silences = Mapping[Key, Silence]
+Silences = Mapping[EventType, Silence]
 """Those of a recording, of what came often in it."""
-
-
-def key_of(event_type: EventType) -> Key:
-    """Return an event type as a key."""
-    return event_type.source, event_type.scope, event_type.type
 
 
 def silences(recording: RecordingEvents) -> Silences:
     """Return the longest silence of every event type that came often in a recording, or a part."""
-    found: Dict[Key, Silence] = {}
+    found: Dict[EventType, Silence] = {}
     for kind, stamps in often(recording):
         gaps = np.diff(stamps)
         longest = int(np.argmax(gaps))
-        found[key_of(kind)] = Silence(*(float(length) / SECOND_NS for length in (
+        found[kind] = Silence(*(float(length) / SECOND_NS for length in (
             stamps[longest] - recording.origin, gaps[longest],
             stamps[0] - recording.stamps[0], recording.stamps[-1] - stamps[-1])))
     return found
@@ -134,9 +126,9 @@ def silences(recording: RecordingEvents) -> Silences:
 def _of_components(found: Silences) -> Dict[str, Silence]:
     """Return the shortest of each component: who sends anything is no longer silent."""
     shortest: Dict[str, Silence] = {}
-    for (source, scope, _), each in found.items():
-        other = shortest.get(source or scope, each)
-        shortest[source or scope] = Silence(
+    for kind, each in found.items():
+        other = shortest.get(component_of(kind), each)
+        shortest[component_of(kind)] = Silence(
             each.begin_s, min(each.length_s, other.length_s), min(each.head_s, other.head_s),
             min(each.tail_s, other.tail_s))
     return shortest

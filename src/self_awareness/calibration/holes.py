@@ -10,9 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-from self_awareness import Coverage, TrainedModel
+from self_awareness import Coverage, EventType, TrainedModel
 from self_awareness.calibration import heads_and_tails
-from self_awareness.calibration.heads_and_tails import Key, Silence, Silences, key_of
+from self_awareness.calibration.heads_and_tails import Silence, Silences, component_of
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 
@@ -26,31 +26,31 @@ class Hole:
 
     Args:
         part: the recording.
-        key: the event type.
+        kind: the event type.
         silence: of the event type, the longest of the recording.
         others_s: the longest silence of all other recordings [s].
     """
 
     part: BagPart
-    key: Key
+    kind: EventType
     silence: Silence
     others_s: float
 
     @property
     def component(self) -> str:
         """The component that was silent."""
-        return self.key[0] or self.key[1]
+        return component_of(self.kind)
 
 
-def known_silences(trained: TrainedModel) -> Dict[Key, float]:
+def known_silences(trained: TrainedModel) -> Dict[EventType, float]:
     """Return the longest gap that the training showed of every event type that is judged [s]."""
-    return {key_of(each): trained.longest_gap(index) / SECOND_NS
+    return {each: trained.longest_gap(index) / SECOND_NS
             for index, each in enumerate(trained.event_types)
             if trained.gaps(index) >= trained.fewest_gaps}
 
 
 def find(recordings: Sequence[Tuple[BagPart, Silences]],
-         known_s: Optional[Mapping[Key, float]] = None) -> List[Hole]:
+         known_s: Optional[Mapping[EventType, float]] = None) -> List[Hole]:
     """Return the holes of some recordings.
 
     Args:
@@ -58,21 +58,21 @@ def find(recordings: Sequence[Tuple[BagPart, Silences]],
         known_s: see known_silences(): they are worth as much as enough other recordings. None:
             the recordings are all that there is.
     """
-    shown: Dict[Key, List[Tuple[Silence, BagPart]]] = {}
+    shown: Dict[EventType, List[Tuple[Silence, BagPart]]] = {}
     for part, silences in recordings:
-        for key, silence in silences.items():
-            shown.setdefault(key, []).append((silence, part))
+        for kind, silence in silences.items():
+            shown.setdefault(kind, []).append((silence, part))
     found = []
-    for key, of_type in shown.items():
+    for kind, of_type in shown.items():
         # Only the longest can be longer than all others.
         *others, (longest, part) = sorted(of_type, key=lambda each: each[0].length_s)
         lengths_s = [silence.length_s for silence, _ in others]
-        if known_s is not None and key in known_s:
-            lengths_s += [known_s[key]] * _FEWEST_OTHERS
+        if known_s is not None and kind in known_s:
+            lengths_s += [known_s[kind]] * _FEWEST_OTHERS
         most_s = max(lengths_s, default=0.0)
         if (len(lengths_s) >= _FEWEST_OTHERS
                 and heads_and_tails.is_longer(longest.length_s, most_s)):
-            found.append(Hole(part, key, longest, most_s))
+            found.append(Hole(part, kind, longest, most_s))
     return found
 
 
@@ -114,7 +114,7 @@ def _decides(hole: Hole, found_s: Optional[float]) -> bool:
 
 def _line(hole: Hole, found_s: Optional[float]) -> str:
     silence = hole.silence
-    text = (f'{hole.part}: {hole.component} ({hole.key[1]}) is silent for '
+    text = (f'{hole.part}: {hole.component} ({hole.kind.scope}) is silent for '
             f'{silence.length_s:.1f} s from {silence.begin_s:.1f} s on, {hole.others_s:.2g} s at '
             'most in the other recordings')
     if found_s is None:

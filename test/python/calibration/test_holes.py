@@ -14,7 +14,7 @@ from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
-GPS, SCAN = ('/gps', '/fix', 'T'), ('/laser', '/scan', 'T')
+GPS, SCAN = EventType('/gps', '/fix', 'T'), EventType('/laser', '/scan', 'T')
 ORIGIN = 1_600_000_000 * SECOND_NS
 
 
@@ -26,7 +26,7 @@ def recorded(name: str, *silent: Tuple[float, float], seconds: float = 100.0) ->
     stamps = np.concatenate([gps, ticks + 0.01])
     order = np.argsort(stamps, kind='stable')
     ids = np.repeat(np.array([0, 1], dtype=np.uint32), [len(gps), len(ticks)])[order]
-    return RecordingEvents(BagPart(name), [EventType(*GPS), EventType(*SCAN)],
+    return RecordingEvents(BagPart(name), [GPS, SCAN],
                            ORIGIN + (stamps[order] * SECOND_NS).astype(np.int64), ids, ORIGIN,
                            ORIGIN + int(seconds * SECOND_NS), 1)
 
