@@ -12,7 +12,7 @@ from typing import IO, Iterator, List, NamedTuple, Sequence
 import numpy as np
 
 from self_awareness import (EncodingRules, EventType, Calibration, EvidenceModel,
-                            TrainedModel, Training)
+                            Learner, TrainedModel)
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.live.processes import Processes, await_condition, free_port
 
@@ -179,12 +179,12 @@ def write_synthetic_model(model: Path, types: int) -> None:
     stamps = ticks + rng.integers(0, period, types) + rng.integers(0, period // 50, (
         _SYNTHETIC_EVENTS, types))
     order = np.argsort(stamps, axis=None, kind='stable')
-    training = Training(EncodingRules.defaults(), paper=True)
-    training.add_events(
+    learner = Learner(encoding=EncodingRules.defaults(), paper=True)
+    learner.count(
         [EventType(f'/{Robot.node_name(i % NODES)}', f'/topic_{i}', 'std_msgs/String')
          for i in range(types)],
         stamps.ravel()[order] + _SYNTHETIC_START_S * SECOND_NS, order % types)
-    training.model().save(str(model))
+    learner.model().save(str(model))
 
 
 def record_command(bag: Path, topics: Sequence[str]) -> List[str]:

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, Dict, List
 
 import page
-from self_awareness import EncodingRules, EventType, Recording, TrainedModel, Training, half_of
+from self_awareness import EventType, Learner, TrainedModel, half_of
 from timers import SIZES, events_of
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
@@ -31,12 +31,12 @@ def _train(types: int, path: str) -> Dict[str, Any]:
     """Train and save a model; the start of the process and making the events do not count."""
     stamps, ids = events_of(types, _SECONDS)
     kinds = [EventType(f'/node_{kind // 3}', f'/topic_{kind}', 'T') for kind in range(types)]
-    training = Training(EncodingRules())
+    learner = Learner()
     before = time.process_time()
     middle = len(stamps) // 2
     for half, part in enumerate((slice(middle), slice(middle, None))):
-        training.add_events(kinds, stamps[part], ids[part], _recording_of(half))
-    model = training.model()
+        learner.count(kinds, stamps[part], ids[part], _fingerprint_of(half))
+    model = learner.model()
     trained = time.process_time()
     model.save(path)
     return {'events': len(stamps), 'train_s': trained - before,
@@ -44,12 +44,9 @@ def _train(types: int, path: str) -> Dict[str, Any]:
             'train_peak_bytes': 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}
 
 
-def _recording_of(half: int) -> Recording:
-    """Return a recording that belongs to a half of the training."""
-    recording = Recording()
-    recording.fingerprint = next(number for number in itertools.count()
-                                 if half_of(number) == half)
-    return recording
+def _fingerprint_of(half: int) -> int:
+    """Return one of a recording that belongs to a half of the training."""
+    return next(number for number in itertools.count() if half_of(number) == half)
 
 
 def _load(path: str, watched_only: bool) -> Dict[str, Any]:

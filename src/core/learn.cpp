@@ -4,6 +4,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/paper/delay_trainer.h"
+#include "self_awareness/core/evidence/count/halves.h"
+#include "self_awareness/core/evidence/count/trainer.h"
 #include "self_awareness/core/evidence/watch/machine_stalls.h"
 
 namespace self_awareness::core {
@@ -19,15 +22,15 @@ const Model& watched(const Model& model) {
   return model;
 }
 
-RecordingInfo infoOf(const Recording& recording) {
+RecordingInfo infoOf(const Recording& recording, std::uint64_t fingerprint) {
   RecordingInfo info;
   info.bag = recording.name;
   info.start = recording.events.front().stamp;
-  info.end = recording.events.back().stamp;
+  info.end = std::max(info.start, recording.events.back().stamp);
   info.events = recording.events.size();
   info.robot_start = recording.robot_start;
   info.robot = recording.robot;
-  info.fingerprint = *recording.fingerprint;
+  info.fingerprint = fingerprint;
   return info;
 }
 
@@ -131,45 +134,123 @@ Calibration Calibrator::find(double budget) const {
   return calibration;
 }
 
+struct Learner::Trainers {
+  Trainers(Model& model, std::int64_t window)
+      : paper(model.statistics), evidence(model.evidence[0], window) {}
+
+  paper::DelayTrainer paper;
+  evidence::Trainer evidence;
+};
+
 Learner::Learner(SourceGraph graph) : Learner(Parameters{}, std::move(graph)) {}
 
-Learner::Learner(const Parameters& parameters, SourceGraph graph)
-    : parameters_(parameters), training_(parameters.counting), graph_(std::move(graph)) {
+Learner::Learner(const Parameters& parameters, SourceGraph graph) : parameters_(parameters) {
+  const Counting& counting = parameters_.counting;
+  if (!counting.evidence && !counting.paper) {
+    throw std::invalid_argument("what is learned is for the evidence or the paper's detector");
+  }
   parameters_.tuning.validate();
-  ofFinder(parameters_.limits, parameters_.counting.window).validate();
+  ofFinder(parameters_.limits, counting.window).validate();
+  model_.window = counting.window;
+  model_.statistics = paper::DelayStatistics(counting.binning);
+  model_.tuning = parameters_.tuning;
+  model_.graph = std::move(graph);
+  trainers_ = std::make_unique<Trainers>(model_, counting.window);
 }
 
-void Learner::add(Recording recording) {
+Learner::~Learner() = default;
+
+void Learner::requireOpen() const {
+  if (!trainers_) {
+    throw std::logic_error("the learning is over: its model was handed out");
+  }
+}
+
+EventId Learner::intern(const EventType& type) {
+  requireOpen();
+  const EventId id = model_.statistics.intern(type);
+  if (parameters_.counting.evidence) {
+    for (evidence::Statistics& half : model_.evidence) {
+      half.intern(type);  // the same id
+    }
+  }
+  return id;
+}
+
+void Learner::count(const Recording& recording) {
+  requireOpen();
   if (recording.events.empty()) {
     throw std::invalid_argument("a recording without events");
   }
-  if (!recording.fingerprint) {
-    recording.fingerprint = recordings_.size();
+  const std::uint64_t fingerprint = recording.fingerprint.value_or(model_.recordings.size());
+  startRecording(recording, fingerprint);
+  if (parameters_.counting.evidence) {
+    for (const Event& event : recording.before) {
+      trainers_->evidence.addBefore(event);
+    }
   }
-  training_.startRecording({*recording.fingerprint, middleOf(recording.events), std::nullopt,
-                            recording.robot_start, recording.robot,
-                            stallsOf(recording, parameters_.tuning)});
   forEachEvent(
-      recording, 0, recording.events.size(), [this](const Event& event) { training_.add(event); },
-      [this] { training_.onClockStep(); });
-  recordings_.push_back(std::move(recording));
+      recording, 0, recording.events.size(), [this](const Event& event) { countEvent(event); },
+      [this] {
+        trainers_->paper.startRecording();
+        trainers_->evidence.onClockStep();
+      });
+  model_.recordings.push_back(infoOf(recording, fingerprint));
+}
+
+void Learner::startRecording(const Recording& recording, std::uint64_t fingerprint) {
+  trainers_->paper.startRecording();
+  trainers_->evidence.startRecording({recording.since, recording.robot_start, recording.robot,
+                                      stallsOf(recording, parameters_.tuning)});
+  const std::size_t half = evidence::halfOf(fingerprint);
+  if (model_.recordings.empty()) {
+    only_half_ = half;
+  } else if (only_half_ && only_half_ != half) {
+    evidence::joinParts(model_.evidence, *only_half_);
+    only_half_.reset();
+  }
+  middle_ = only_half_ ? std::optional(middleOf(recording.events)) : std::nullopt;
+  trainers_->evidence.countInto(model_.evidence.at(only_half_ ? 0 : half));
+}
+
+void Learner::countEvent(const Event& event) {
+  if (vocabulary().tellsMode(event.id)) {
+    // The paper knows no modes.
+  } else if (parameters_.counting.paper) {
+    trainers_->paper.add(event);
+  } else {
+    model_.statistics.countEvent(event.id);
+  }
+  if (middle_ && event.stamp >= *middle_) {
+    middle_.reset();
+    trainers_->evidence.countInto(model_.evidence[1]);
+  }
+  if (parameters_.counting.evidence) {
+    trainers_->evidence.add(event);
+  }
+}
+
+void Learner::add(Recording recording) {
+  if (!recording.fingerprint) {
+    recording.fingerprint = model_.recordings.size();
+  }
+  count(recording);
+  kept_.push_back(std::move(recording));
+}
+
+Model Learner::counts() {
+  requireOpen();
+  trainers_->evidence.finish();
+  trainers_.reset();
+  return std::exchange(model_, {});
 }
 
 Model Learner::learn() {
-  if (recordings_.empty()) {
+  if (model_.recordings.empty()) {
     throw std::logic_error("there is no recording to learn from, or the learning has ended");
   }
-  Model model;
-  TrainingCounts counts = training_.finish();
-  model.window = parameters_.counting.window;
-  model.statistics = std::move(counts.delays);
-  model.evidence = std::move(counts.halves);
-  model.tuning = parameters_.tuning;
-  model.graph = std::move(graph_);
-  for (const Recording& recording : recordings_) {
-    model.recordings.push_back(infoOf(recording));
-  }
-  const std::vector<Recording> recordings = std::exchange(recordings_, {});
+  Model model = counts();
+  const std::vector<Recording> recordings = std::exchange(kept_, {});
   if (!parameters_.counting.evidence) {
     why_ = "it was not learned for the evidence detector";
     return model;

@@ -1,5 +1,8 @@
 #include "self_awareness/core/model.h"
 
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
 #include <stdexcept>
 #include <utility>
 
@@ -12,6 +15,45 @@ namespace {
 
 // What all recordings of one start have, somebody may have started by hand.
 constexpr std::size_t kFewestStarts = 2;
+
+void requireCounts(const Model& model) {
+  if (!model.hasEvidence() && (model.isWatched() || !model.hasDelays())) {
+    throw std::invalid_argument("loaded without its counts");
+  }
+}
+
+std::int64_t horizon(const paper::Binning& binning) {
+  return binning.horizon_bins * binning.bin_size;
+}
+
+// Throws std::invalid_argument unless the two are the same.
+// @param none what a 0 means, in words
+void requireSame(const std::string& what, std::int64_t one, std::int64_t other,
+                 const std::string& none) {
+  const auto text = [&](std::int64_t time) {
+    std::ostringstream seconds;
+    seconds << std::setprecision(12) << toSeconds(time) << " s";
+    return time == 0 ? none : seconds.str();
+  };
+  if (one != other) {
+    throw std::invalid_argument("another " + what + ": " + text(other) + ", not " + text(one));
+  }
+}
+
+void addTo(SourceGraph& graph, const SourceGraph& other) {
+  for (const auto& [publisher, topic, subscriber] : other.edges()) {
+    graph.connect(publisher, topic, subscriber);
+  }
+  for (const auto& [source, host] : other.hosts()) {
+    graph.place(source, host);
+  }
+  for (const SourceGraph::Publication& publication : other.unheard()) {
+    graph.addUnheard(publication);
+  }
+  for (const auto& [subscription, in_recordings] : other.lasting()) {
+    graph.addLasting(subscription, in_recordings);
+  }
+}
 
 }  // namespace
 
@@ -107,6 +149,36 @@ void Model::watch() {
   }
   evidence::leaveOutSilentPairs(evidence, graph, tuning);
   watched = evidence::watch(evidence[0], evidence[1], graph, tuning);
+}
+
+void Model::dropWatched() {
+  watched = {};
+  findings.clear();
+  calibration.reset();
+  paper_calibration.reset();
+}
+
+void Model::add(const Model& other) {
+  requireCounts(*this);
+  requireCounts(other);
+  requireSame("length of the windows", window, other.window, "0 s");
+  const paper::Binning& binning = statistics.binning();
+  const paper::Binning& others = other.statistics.binning();
+  requireSame("bin size", binning.bin_size, others.bin_size, "0 s");
+  requireSame("horizon", horizon(binning), horizon(others), "none");
+  if (hasEvidence() != other.hasEvidence() || hasDelays() != other.hasDelays()) {
+    throw std::invalid_argument("trained for another detector: " + other.detectors() + ", not " +
+                                detectors() + "; train both with the same --detector");
+  }
+  statistics.merge(other.statistics);
+  evidence::merge(evidence, onlyHalf(), other.evidence, other.onlyHalf());
+  addTo(graph, other.graph);
+  recordings.insert(recordings.end(), other.recordings.begin(), other.recordings.end());
+  if (tuning != other.tuning) {
+    tuning = {};
+  }
+  dropWatched();
+  stamp = std::max(stamp, other.stamp);
 }
 
 void Model::dropCounts() {

@@ -17,7 +17,6 @@
 #include <variant>
 #include <vector>
 
-#include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/clock_steps.h"
@@ -118,20 +117,6 @@ void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
   forEachEvent(stamps, ids, MessageAttributes(), handler);
 }
 
-/// The same, and calls onStep() before each event with which the clock was set forward.
-template <typename Handler, typename OnStep>
-void forEachEvent(const Stamps& stamps, const Ids& ids, const MessageAttributes& attributes,
-                  const core::ClockSteps& steps, Handler handler, OnStep onStep) {
-  std::optional<std::int64_t> last;
-  forEachEvent(stamps, ids, attributes, [&](const core::Event& event) {
-    if (last && steps.between(*last, event.stamp)) {
-      onStep();
-    }
-    last = event.stamp;
-    handler(event);
-  });
-}
-
 /// Tells a callback of Python, or None, how far a reader has come; Ctrl-C ends the reading.
 inline ros1::BagReader::Progress progressTo(const py::object& callback) {
   return [&callback](std::uint64_t done, std::uint64_t all) {
@@ -181,7 +166,11 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
       detector.setSenders({std::get<1>(*next_senders), std::get<2>(*next_senders)});
     }
   };
-  const auto add = [&](const core::Event& event) {
+  forEachEvent(stamps, ids, attributes, [&](const core::Event& event) {
+    if (last && steps.between(*last, event.stamp)) {
+      detector.restart();
+      set_forward = true;
+    }
     wait(event.stamp);
     const bool same_clock = detector.add(event) && !set_forward;
     set_forward = false;
@@ -189,10 +178,6 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
     if (heard) {
       heard(event, same_clock);
     }
-  };
-  forEachEvent(stamps, ids, attributes, steps, add, [&] {
-    detector.restart();
-    set_forward = true;
   });
   if (end && last && !core::isClockStep(*last, *end)) {
     wait(*end);
@@ -201,33 +186,20 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
   detector.finish();
 }
 
-/// Delays of a pair of event types: shortest delay [ns] and count by bin.
-inline std::vector<std::pair<std::int64_t, std::uint32_t>> delaysOf(
-    const core::evidence::Statistics& statistics, core::EventId from, core::EventId to) {
-  const core::evidence::DelayHistogram& counts = statistics.delays(from, to);
-  std::vector<std::pair<std::int64_t, std::uint32_t>> delays;
-  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
-    delays.emplace_back(core::evidence::log_bins::lowerEdge(bin), counts[bin]);
-  }
-  return delays;
-}
-
 /// Binds files that are written whole or not at all (output_file_bindings.cpp).
 void bindOutputFiles(py::module& module);
 /// Binds the writing of event logs (event_log_bindings.cpp).
 void bindEventLogs(py::module& module);
-/// Binds the encoding, and the reading of bags and event logs (recording_bindings.cpp).
+/// Binds event types, and how messages become events (encoding_bindings.cpp).
+void bindEncoding(py::module& module);
+/// Binds the reading of bags and event logs (recording_bindings.cpp).
 void bindRecordings(py::module& module);
 /// Binds what files say of their versions (file_version_bindings.cpp).
 void bindFileVersions(py::module& module);
 /// Binds model files (model_bindings.cpp).
 void bindModel(py::module& module);
-/// Binds the training (training_bindings.cpp).
-void bindTraining(py::module& module);
 /// Binds the numbers of the method (tuning_bindings.cpp).
 void bindTuning(py::module& module);
-/// Binds what a training counted (counts_bindings.cpp).
-void bindCounts(py::module& module);
 /// Binds alarms and their suspects (alarm_bindings.cpp).
 void bindAlarms(py::module& module);
 void bindIncidents(py::module& module);
@@ -235,8 +207,8 @@ void bindIncidents(py::module& module);
 void bindAccepted(py::module& module);
 /// @throw std::invalid_argument if there are too many
 core::Acceptances acceptancesOf(const std::vector<core::Acceptance>& list);
-/// Binds the learning of limits, and of whole models (calibration_bindings.cpp).
-void bindCalibration(py::module& module);
+/// Binds the learning of models, and of their limits (learn_bindings.cpp).
+void bindLearning(py::module& module);
 /// Binds evidence and its limits (evidence_bindings.cpp).
 void bindEvidence(py::module& module);
 /// Binds the evidence of components over time (lanes_bindings.cpp).

@@ -152,7 +152,6 @@ void bindVerdicts(py::module& m) {
           [](Detector::Parameters& self, std::int64_t ns) { self.persistence.hold_time = ns; },
           "[ns]")
       .def_readwrite("settle_time", &Detector::Parameters::settle_time, "[ns]")
-      .def_readwrite("silence_is_abnormal", &Detector::Parameters::silence_is_abnormal)
       .def_readwrite("unknown", &Detector::Parameters::unknown)
       .def("validate", &Detector::Parameters::validate);
 
@@ -195,8 +194,6 @@ void bindVerdicts(py::module& m) {
              return std::make_shared<core::paper::Model>(trained.statistics);
            }),
            py::arg("trained"))
-      .def("probability", &core::paper::Model::probability, py::arg("from_id"), py::arg("to_id"),
-           py::arg("delay"), "P_ij of a delay [ns]")
       .def_property_readonly(
           "entropies",
           [](const core::paper::Model& self) {
@@ -212,7 +209,6 @@ void bindVerdicts(py::module& m) {
           "h_ij [bit], [from, to]")
       .def("weight", &core::paper::Model::weight, py::arg("from_id"), py::arg("to_id"),
            "w_ij once all event types were seen")
-      .def("log_survival", &core::paper::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def(
           "score_events",
           [](const std::shared_ptr<core::paper::Model>& self, const Stamps& stamps,

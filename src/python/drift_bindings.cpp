@@ -2,7 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "bindings.h"
@@ -13,6 +13,7 @@ namespace self_awareness::python {
 
 using core::evidence::Drift;
 using core::evidence::DriftSamples;
+using StretchState = std::tuple<std::int64_t, std::int64_t, std::int64_t, std::vector<double>>;
 
 void bindDrift(py::module& m) {
   py::class_<Drift::Component>(m, "ComponentDrift", "How far a component has drifted.")
@@ -25,31 +26,26 @@ void bindDrift(py::module& m) {
   py::class_<Drift>(m, "Drift",
                     "Tells that what is heard drifts towards the limits: a test whose false\n"
                     "alarms over a lifetime are bounded (docs/learn_more.md).")
-      .def(py::init<std::size_t>(), py::arg("components"))
-      .def("add", &Drift::add, py::arg("shares"),
-           "Takes in the next sample: the largest share of its limit of each component.\n"
-           "ValueError if their number is another one, or one is not finite or below 0.")
       .def("component", &Drift::component, py::arg("number"))
       .def_property_readonly("samples", &Drift::samples, "number of samples so far")
-      .def_property_readonly("needed", &Drift::needed, "evidence from which on it is told")
-      .def_property_readonly_static(
-          "FALSE_ALARMS", [](const py::object&) { return Drift::kFalseAlarms; },
-          "probability that a robot in which nothing changes is ever told to drift");
-  py::class_<DriftSamples>(m, "DriftSamples",
-                           "What is one sample of a Drift: all that was normal in a start of the\n"
-                           "robot, or in a day of one.")
-      .def(py::init<std::size_t>(), py::arg("components"))
-      .def(
-          "add",
-          [](DriftSamples& self, std::int64_t begin, std::int64_t end, std::int64_t robot_start,
-             std::vector<double> shares) {
-            self.add({begin, end, robot_start, std::move(shares)});
-          },
-          py::arg("begin"), py::arg("end"), py::arg("robot_start"), py::arg("shares"),
-          "Takes in the next time that was normal [ns]. robot_start: the same for all of a start\n"
-          "of the robot; 0: not known, then a start ends with a pause of more than a minute.\n"
-          "shares: as Drift.add().")
-      .def_property_readonly("drift", &DriftSamples::drift, "what they say");
+      .def_property_readonly("needed", &Drift::needed, "evidence from which on it is told");
+  m.def(
+      "drift_of",
+      [](std::size_t components, const std::vector<StretchState>& normal) {
+        DriftSamples samples(components);
+        for (const auto& [begin, end, robot_start, shares] : normal) {
+          samples.add({begin, end, robot_start, shares});
+        }
+        return samples.drift();
+      },
+      py::arg("components"), py::arg("normal"),
+      "The Drift that times say which were normal, in their order: of each (begin [ns], end "
+      "[ns],\n"
+      "robot_start, shares). robot_start: the same for all of a start of the robot; 0: not "
+      "known,\n"
+      "then a start ends with a pause of more than a minute. shares: the largest share of its\n"
+      "limit, of each component. A sample is all of a start of the robot, or of a day of one.\n"
+      "ValueError if the number of shares is another one, or one is not finite or below 0.");
 }
 
 }  // namespace self_awareness::python

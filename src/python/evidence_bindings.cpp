@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +13,7 @@
 
 #include "bindings.h"
 #include "core/evidence/channel/scorer.h"
+#include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/watch/relation.h"
 #include "self_awareness/ros/model/model_file.h"
@@ -72,6 +75,43 @@ py::array_t<double> evidenceOf(const std::shared_ptr<evidence::Model>& model, st
   return array;
 }
 
+/// Counts of all pairs of event types, of a half of the training or of both.
+std::shared_ptr<evidence::Model> ofAllPairs(const ros1::TrainedModel& trained,
+                                            std::optional<std::size_t> half) {
+  if (!trained.hasEvidence()) {
+    throw std::invalid_argument("the counts of all pairs were not loaded");
+  }
+  if (half.value_or(0) > 1) {
+    throw std::invalid_argument("a training has the halves 0 and 1");
+  }
+  using Learned = evidence::Model::Learned;
+  return std::make_shared<evidence::Model>(evidence::Watched{{}, trained.evidence, trained.tuning},
+                                           !half        ? Learned::kBoth
+                                           : *half == 0 ? Learned::kFirst
+                                                        : Learned::kSecond);
+}
+
+/// Variance of the number of events of a type in kRateSpan.
+double rateVariance(const evidence::Model& model, core::EventId id) {
+  const evidence::Statistics& counts = model.learned();
+  const auto windows = static_cast<double>(std::max<std::uint64_t>(counts.rateWindows(), 1));
+  const evidence::Statistics::Type& type = counts.type(id);
+  const double mean = static_cast<double>(type.rate_sum) / windows;
+  return std::max(static_cast<double>(type.rate_squares) / windows - mean * mean, 0.0);
+}
+
+/// Delays of a pair of event types: shortest delay [ns] and count by bin.
+std::vector<std::pair<std::int64_t, std::uint32_t>> delaysOf(const evidence::Model& model,
+                                                             core::EventId from,
+                                                             core::EventId to) {
+  const evidence::DelayHistogram& counts = model.learned().delays(from, to);
+  std::vector<std::pair<std::int64_t, std::uint32_t>> delays;
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    delays.emplace_back(evidence::log_bins::lowerEdge(bin), counts[bin]);
+  }
+  return delays;
+}
+
 }  // namespace
 
 void bindEvidence(py::module& m) {
@@ -94,7 +134,29 @@ void bindEvidence(py::module& m) {
              return std::make_shared<evidence::Model>(trained.watched);
            }),
            py::arg("trained"))
+      .def_static(
+          "of_all_pairs", &ofAllPairs, py::arg("trained"), py::arg("half") = py::none(),
+          "What was counted of all pairs, not only of those that are watched; it has no\n"
+          "tracks. half: of the training, 0 or 1; None: both. ValueError if the model was\n"
+          "not trained for the evidence detector, or only a part of it was loaded.")
       .def_property_readonly("tracks", &evidence::Model::tracks)
+      .def_property_readonly(
+          "duration", [](const evidence::Model& self) { return self.learned().duration(); },
+          "of the recordings [ns]")
+      .def(
+          "events",
+          [](const evidence::Model& self, core::EventId id) {
+            return self.learned().type(id).events;
+          },
+          py::arg("id"))
+      .def("rate_variance", &rateVariance, py::arg("id"),
+           "variance of the number of events in RATE_SPAN")
+      .def(
+          "delay_count",
+          [](const evidence::Model& self, core::EventId from, core::EventId to) {
+            return self.learned().total(from, to);
+          },
+          py::arg("from_id"), py::arg("to_id"), "number of delays")
       .def(
           "usual_delay",
           [](const evidence::Model& self, core::EventId from, core::EventId to, double share) {
@@ -103,20 +165,16 @@ void bindEvidence(py::module& m) {
           py::arg("from_id"), py::arg("to_id"), py::arg("share"),
           "delay [s] that this share (0 to 1) of the delays in training did not exceed,\n"
           "as exactly as the bins are")
-      .def(
-          "delays",
-          [](const evidence::Model& self, core::EventId from, core::EventId to) {
-            return delaysOf(self.statistics(), from, to);
-          },
-          py::arg("from_id"), py::arg("to_id"),
-          "counts of the delays in training, of what is watched: list of (shortest delay [ns],\n"
-          "count) by bin; zeros for other pairs")
+      .def("delays", &delaysOf, py::arg("from_id"), py::arg("to_id"),
+           "counts of the delays in training, of what is watched: list of (shortest delay [ns],\n"
+           "count) by bin; zeros for other pairs")
       .def("overdue", &evidence::Model::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
-      .def("log_survival", &evidence::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),
            py::arg("limits") = py::none(),
            "Evidence at the end of every window of a recording: float64 [windows, tracks].\n"
            "limits: by track, which sums end a little above; NaN: not judged. None: not known.");
+
+  m.attr("RATE_SPAN") = evidence::kRateSpan;  // [ns]
 
   py::class_<evidence::Relation>(m, "Relation", "What speaks for a relation.")
       .def_readonly("watched", &evidence::Relation::watched)

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "bindings.h"
-#include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/verdict/suspect.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
@@ -20,20 +19,6 @@
 
 namespace self_awareness::python {
 namespace {
-
-std::vector<std::pair<std::int64_t, std::uint64_t>> sumOfDelays(const ros1::TrainedModel& model,
-                                                                core::EventId from,
-                                                                core::EventId to) {
-  std::vector<std::pair<std::int64_t, std::uint64_t>> delays;
-  for (std::size_t bin = 0; bin < core::evidence::kDelayBins; ++bin) {
-    std::uint64_t count = 0;
-    for (const core::evidence::Statistics& half : model.evidence) {
-      count += half.delays(from, to)[bin];
-    }
-    delays.emplace_back(core::evidence::log_bins::lowerEdge(bin), count);
-  }
-  return delays;
-}
 
 std::map<std::string, std::set<std::string>> robotsOf(const ros1::TrainedModel& model) {
   std::map<std::string, std::set<std::string>> robots;
@@ -176,8 +161,6 @@ void bindModel(py::module& m) {
       .def_readonly("late_answers", &Coverage::late_answers, "whether they are found")
       .def_readonly("more_starts", &Coverage::more_starts,
                     "of the robot, after which they would be; 0: no number helps")
-      .def_readonly("graph_helps", &Coverage::graph_helps,
-                    "whether they would be, if messages reach it by the graph, which is not known")
       .def_property_readonly("late_answers_found", &core::evidence::lateAnswers,
                              "the three in words, as /diagnostics says them; empty: never")
       .def_property_readonly("is_watched", &Coverage::isWatched, "whether its death is found")
@@ -382,8 +365,6 @@ void bindModel(py::module& m) {
           py::arg("from_id"), py::arg("to_id"),
           "the paper's counts of the delays from the last from_id to the current to_id: dict of\n"
           "bin: count")
-      .def("delays", &sumOfDelays, py::arg("from_id"), py::arg("to_id"),
-           "the evidence detector's counts: list of (shortest delay [ns], count) by bin")
       .def(
           "quantile",
           [](const TrainedModel& self, core::EventId from, core::EventId to, double fraction) {

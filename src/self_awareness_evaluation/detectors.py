@@ -7,9 +7,8 @@ from typing import AbstractSet, Dict, Iterable, List, Optional, Sequence, Set, T
 import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, Alarm, DetectorParameters,
-                            EncodingRules, EventType, EvidenceModel, Learner, Occurrence,
-                            PaperModel, TrainedModel, Training, Tuning, Verdicts, fold_incidents,
-                            judge_by_evidence)
+                            EventType, EvidenceModel, Learner, Occurrence, PaperModel,
+                            TrainedModel, Tuning, Verdicts, fold_incidents, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
 from self_awareness_evaluation.systems import (ALARM, Judged, SystemAlarm, common_threshold,
@@ -30,10 +29,12 @@ class Paper:
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
-        training = Training(EncodingRules(), window=DEFAULT_WINDOW, paper=True)
+        learner = Learner(evidence=False, paper=True)
         for recording in recordings:
-            training.add_events(recording.event_types, recording.stamps, recording.ids)
-        trained = training.model(watch=False)
+            learner.count(recording.event_types, recording.stamps, recording.ids,
+                          recording.fingerprint, robot=recording.robot,
+                          attributes=recording.attributes)
+        trained = learner.model(watch=False)
         self._types = trained.event_types
         self._model = PaperModel(trained)
 

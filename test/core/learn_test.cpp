@@ -13,7 +13,6 @@
 
 #include "evidence/recordings.h"
 #include "self_awareness/core/evidence/channel/watched.h"
-#include "self_awareness/core/evidence/watch/machine_stalls.h"
 #include "self_awareness/core/verdict/alarm.h"
 
 namespace self_awareness::core {
@@ -85,26 +84,18 @@ TEST(Learner, AModelSaysWhatItWasLearnedFromAndHasLimits) {
 TEST(Learner, IsTheSameAsItsStepsOneByOne) {
   const std::vector<std::uint64_t> fingerprints{1, 2, 4, 7};
   const Model model = learned(fingerprints);
-  Training training({});
-  for (const EventType& type : kTypes) {
-    training.intern(type);
-  }
+  Learner learner;
+  addTypes(learner);
   for (const std::uint64_t fingerprint : fingerprints) {
-    const Recording recording = robot(static_cast<unsigned>(fingerprint));
-    evidence::MachineStalls stalls(evidence::Tuning{});
-    for (const Event& event : recording.events) {
-      stalls.add(event.stamp);
-    }
-    training.startRecording(
-        {fingerprint, middleOf(recording.events), std::nullopt, 0, "", stalls.find()});
-    for (const Event& event : recording.events) {
-      training.add(event);
-    }
+    Recording recording = robot(static_cast<unsigned>(fingerprint));
+    recording.fingerprint = fingerprint;
+    learner.count(recording);
   }
-  const TrainingCounts counts = training.finish();
-  EXPECT_TRUE(model.evidence[0] == counts.halves[0]);
-  EXPECT_TRUE(model.evidence[1] == counts.halves[1]);
-  const evidence::CrossFit models(evidence::watch(counts.halves[0], counts.halves[1]));
+  const Model counts = learner.counts();
+  EXPECT_FALSE(counts.isWatched());
+  EXPECT_TRUE(model.evidence[0] == counts.evidence[0]);
+  EXPECT_TRUE(model.evidence[1] == counts.evidence[1]);
+  const evidence::CrossFit models(evidence::watch(counts.evidence[0], counts.evidence[1]));
   evidence::LimitFinder finder(models.model(), {});
   for (const std::uint64_t fingerprint : fingerprints) {
     finder.startRecording(models.judging(halfOf(fingerprint)));

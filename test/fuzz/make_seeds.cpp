@@ -13,7 +13,7 @@
 #include "bag_bytes.h"
 #include "ros/verdict/standing_alarm.h"
 #include "self_awareness/EventLogGraph.h"
-#include "self_awareness/core/training.h"
+#include "self_awareness/core/learn.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/bag_to_event_log.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
@@ -55,28 +55,24 @@ ros1::bag_bytes::Parts smallBag() {
 
 /// A model of two event types for both detectors, with limits.
 void writeModel(const std::string& path) {
-  core::Training::Parameters parameters;
-  parameters.paper = true;
-  core::Training training(parameters);
-  const core::EventId a = training.intern({"/a", "/x", "T"});
-  const core::EventId b = training.intern({"/b", "/y", "T[action=1]"});
+  core::Learner::Parameters parameters;
+  parameters.counting.paper = true;
+  core::SourceGraph graph;
+  graph.connect("/a", "/x", "/b");
+  core::Learner learner(parameters, graph);
+  const core::EventId a = learner.intern({"/a", "/x", "T"});
+  const core::EventId b = learner.intern({"/b", "/y", "T[action=1]"});
   for (std::uint64_t number = 0; number < 2; ++number) {
-    core::Training::Recording recording;
-    recording.fingerprint = number;
-    training.startRecording(recording);
+    core::Recording recording;
     for (int i = 0; i < 150; ++i) {
-      training.add({i * 37000000LL, i % 3 == 0 ? b : a});
+      recording.events.push_back({i * 37000000LL, i % 3 == 0 ? b : a});
     }
+    learner.count(recording);
   }
-  core::TrainingCounts counts = training.finish();
-  ros1::TrainedModel model;
+  ros1::TrainedModel model(learner.counts());
   model.encoding = ros1::EncodingRules::defaults();
-  model.statistics = std::move(counts.delays);
-  model.evidence = std::move(counts.halves);
-  model.graph.connect("/a", "/x", "/b");
   model.watch();
   model.stamp = core::kNanosecondsPerSecond;
-  model.recordings.resize(1);
   model.paper_calibration = core::paper::Calibration();
   model.paper_calibration->threshold = 1.25;
   model.calibration = core::Calibration();

@@ -149,7 +149,7 @@ class LiveRulesTest(MonitorCase):
             (rospy.get_name(), '/state', text + '[mode: DRIVING]'),
             (rospy.get_name(), '/state', text + '[mode: DOCKED]'),
             ('/planner', '/plan', text), ('/imu', '/imu', text))]
-        training = self_awareness.Training(encoding)
+        learner = self_awareness.Learner(encoding=encoding)
         recordings = []
         for seed in range(3):
             rng = random.Random(seed)
@@ -159,14 +159,12 @@ class LiveRulesTest(MonitorCase):
                 events += [(begin + 0.5 + 0.1 * (i + 0.3 * rng.random()), 3) for i in range(294)]
             stamps = [int((1e3 * (seed + 1) + at) * 1e9) for at, _ in sorted(events)]
             ids = [event for _, event in sorted(events)]
-            recording = self_awareness.Recording()
-            recording.fingerprint = seed
-            training.add_events(types, stamps, ids, recording)
+            learner.count(types, stamps, ids, fingerprint=seed)
             recordings.append((stamps, ids, seed))
-        model = training.model()
+        model = learner.model()
         calibrator = self_awareness.Calibrator(model, 5 * 10**9)
         for stamps, ids, fingerprint in recordings:
-            calibrator.add_trained_on(stamps, ids, fingerprint)
+            calibrator.add(stamps, ids, fingerprint)
         model.calibration = calibrator.find(0.5)
         model.save(self.path('model'))
         return self.path('model')
@@ -212,10 +210,11 @@ class LiveRulesTest(MonitorCase):
     @again_if_disturbed
     def test_anonymous_names_are_one_source(self) -> None:
         """Two starts of an anonymous node are the same source of the model."""
-        training = self_awareness.Training(self_awareness.EncodingRules.defaults(), paper=True)
+        learner = self_awareness.Learner(
+            encoding=self_awareness.EncodingRules.defaults(), paper=True)
         event = self_awareness.EventType('/talker', '/scan', 'std_msgs/String')
-        training.add_events([event], [10**12 + i * 10**8 for i in range(500)], [0] * 500)
-        training.model().save(self.path('anonymous'))
+        learner.count([event], [10**12 + i * 10**8 for i in range(500)], [0] * 500)
+        learner.model().save(self.path('anonymous'))
         with self.monitor(self.path('anonymous')), MonitorListener() as listener:
             for number in ('1795206538727453261', '4242_1795206538727'):
                 heard = len(listener.diagnostics('/talker'))

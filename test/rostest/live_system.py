@@ -317,11 +317,11 @@ def make_model(path: str, bags: Sequence[str], threshold: Optional[float],
     """Trains a model on bags and writes it with this threshold, or not calibrated."""
     encoding = self_awareness.EncodingRules.defaults()
     encoding.source = source
-    training = self_awareness.Training(encoding, paper=True)
+    learner = self_awareness.Learner(encoding=encoding, paper=True)
     for bag in bags:
         read = self_awareness.read_events(bag, encoding)
-        training.add_events(read.event_types, read.stamps, read.ids)
-    model = training.model()
+        learner.count(read.event_types, read.stamps, read.ids)
+    model = learner.model()
     if threshold is not None:
         calibration = self_awareness.PaperCalibration()
         calibration.threshold = threshold

@@ -88,8 +88,8 @@ class MonitorCase(unittest.TestCase):
         encoding.exclude_topics += ['/rosout']
         if bonds:
             encoding.exclude_topics = [x for x in encoding.exclude_topics if x != '.*/bond']
-        training = self_awareness.Training(encoding, bin_size=500 * 10**6, window=window,
-                                           paper=True)
+        learner = self_awareness.Learner(encoding=encoding, bin_size=500 * 10**6,
+                                         window=window, paper=True)
         types = [self_awareness.EventType((sources or {}).get(topic, rospy.get_name()), topic,
                                           'std_msgs/String') for topic in topics]
         stamps, ids = [], []
@@ -97,8 +97,8 @@ class MonitorCase(unittest.TestCase):
             for event, _ in enumerate(types):
                 stamps.append(10**12 + tick * 50 * 10**6 + event * 10**6)
                 ids.append(event)
-        training.add_events(types, stamps, ids)
-        model = training.model()
+        learner.count(types, stamps, ids)
+        model = learner.model()
         if threshold is not None:
             calibration = self_awareness.PaperCalibration()
             calibration.threshold = threshold

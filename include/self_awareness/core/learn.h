@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,10 +10,12 @@
 #include "self_awareness/core/evidence/limits/cross_fit.h"
 #include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/model.h"
+#include "self_awareness/core/paper/binning.h"
 #include "self_awareness/core/stream/clock_steps.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/stream/waiting.h"
-#include "self_awareness/core/training.h"
+#include "self_awareness/core/stream/windows.h"
 
 namespace self_awareness::core {
 
@@ -29,10 +32,15 @@ struct Recording {
   ClockSteps clock_steps{};
   /// How the machine was, one stretch of time after the other; empty: not known.
   std::vector<Waiting> waiting{};
+  /// When it began [ns], if that was before its events; none: with the first one.
+  std::optional<std::int64_t> since{};
+  /// What it holds from then on before its events, and is not learned from: it only says when
+  /// their types come first.
+  std::vector<Event> before{};
 };
 
 /// Where the second part of a recording begins [ns]: each part is learned from by itself as long
-/// as all recordings belong to one half (Training).
+/// as all recordings belong to one half.
 /// @param first, last stamps of its events [ns]
 inline std::int64_t middleOf(std::int64_t first, std::int64_t last) {
   return first + (last - first) / 2;
@@ -87,14 +95,24 @@ class Calibrator {
   std::optional<std::size_t> only_half_;  // that all recordings of the training belong to
 };
 
-/// Learns a model from recordings of normal operation, one after the other. It keeps their events
-/// until the end: limits are found in a second pass. Programs that learn from more than the memory
-/// holds do the same in three steps: Training, Model::watch(), Calibrator.
+/// Learns a model from recordings of normal operation, one after the other: it counts, and a model
+/// computes the rest from the counts. They do not depend on the order of the recordings, and add
+/// up: what several learners count, in threads, processes or on a cluster, is in sum what one of
+/// them counts (Model::add(); docs/method.md, sections 2.1 and 3.1). Limits need a second pass
+/// over the recordings: learn() does it with what is in memory; after counts(), it is for a
+/// Calibrator.
 class Learner {
  public:
+  /// What is counted, and how.
+  struct Counting {
+    bool evidence = true;                  ///< count for the evidence detector
+    bool paper = false;                    ///< count for the paper's
+    std::int64_t window = kDefaultWindow;  ///< length of the windows to be judged [ns], > 0
+    paper::Binning binning;                ///< of the paper's delays
+  };
   /// How a model is learned.
   struct Parameters {
-    Training::Parameters counting;  ///< what for, and the windows' length
+    Counting counting;              ///< what for, and the windows' length
     Calibrator::Parameters limits;  ///< how they are found
     evidence::Tuning tuning{};      ///< the numbers of the method
   };
@@ -102,27 +120,47 @@ class Learner {
   /// Learns with the default parameters.
   /// @param graph whose messages reach whom; empty: not known
   explicit Learner(SourceGraph graph = {});
-  /// @throw std::invalid_argument if a parameter is out of range
+  /// @throw std::invalid_argument if a parameter is out of range, or nothing is to be counted
   Learner(const Parameters& parameters, SourceGraph graph);
+  ~Learner();
 
   /// Id of an event type; a new type is added.
-  /// @throw std::logic_error after learn()
-  EventId intern(const EventType& type) { return training_.intern(type); }
-  /// Learns from a recording.
-  /// @throw std::invalid_argument if it has no events; std::logic_error after learn()
+  /// @throw std::logic_error after counts() or learn()
+  EventId intern(const EventType& type);
+  /// The event types so far, by id.
+  const Vocabulary& vocabulary() const { return model_.vocabulary(); }
+
+  /// Counts a recording, and keeps nothing else of it.
+  /// @throw std::invalid_argument if it has no events; std::logic_error after counts() or learn()
+  void count(const Recording& recording);
+  /// Counts a recording, and keeps its events for the limits of learn().
+  /// @throw as count()
   void add(Recording recording);
+  /// Ends the learning: a model of all that was counted. It has no limits, and what it watches is
+  /// not chosen yet (Model::watch()).
+  /// @throw std::logic_error if it has ended already
+  Model counts();
   /// Ends the learning. The model has limits if it was learned for the evidence detector, and
-  /// the recordings are long enough: else why() says why not.
+  /// the recordings of add() are long enough: else why() says why not.
   /// @throw std::logic_error if there is no recording, or it has ended already
   Model learn();
   /// Why learn() has found no limits; empty: it has.
   const std::string& why() const { return why_; }
 
  private:
+  struct Trainers;
+
+  /// @throw std::logic_error after counts() or learn()
+  void requireOpen() const;
+  void startRecording(const Recording& recording, std::uint64_t fingerprint);
+  void countEvent(const Event& event);
+
   Parameters parameters_;
-  Training training_;
-  SourceGraph graph_;
-  std::vector<Recording> recordings_;
+  Model model_;  // what was counted
+  std::unique_ptr<Trainers> trainers_;
+  std::optional<std::size_t> only_half_;  // that all recordings belong to; none: both, or none yet
+  std::optional<std::int64_t> middle_;    // of a recording of two parts [ns], until it is reached
+  std::vector<Recording> kept_;
   std::string why_;
 };
 

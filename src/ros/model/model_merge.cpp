@@ -2,33 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <iomanip>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 
 namespace self_awareness::ros1 {
 namespace {
-
-std::string seconds(std::int64_t nanoseconds) {
-  std::ostringstream text;
-  text << std::setprecision(12) << core::toSeconds(nanoseconds) << " s";
-  return text.str();
-}
-
-std::int64_t horizon(const core::paper::Binning& binning) {
-  return binning.horizon_bins * binning.bin_size;
-}
-
-// Throws std::invalid_argument unless the two are the same.
-// @param none what a 0 means, in words
-void requireSame(const std::string& what, std::int64_t one, std::int64_t other,
-                 const std::string& none) {
-  const auto text = [&](std::int64_t time) { return time == 0 ? none : seconds(time); };
-  if (one != other) {
-    throw std::invalid_argument("another " + what + ": " + text(other) + ", not " + text(one));
-  }
-}
 
 void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
   const auto require = [](const std::string& what, bool same) {
@@ -45,15 +23,6 @@ void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
   require("type_fields", one.type_fields == other.type_fields);
   require("the classes of type_fields", one.classes == other.classes);
   require("mode", one.mode == other.mode);
-}
-
-/// And what is watched.
-void dropCalibrations(TrainedModel& model) {
-  model.watched = {};
-  model.left_out.clear();
-  model.findings.clear();
-  model.calibration.reset();
-  model.paper_calibration.reset();
 }
 
 core::SourceGraph renamed(const core::SourceGraph& graph, const Encoder& encoder) {
@@ -78,48 +47,14 @@ core::SourceGraph renamed(const core::SourceGraph& graph, const Encoder& encoder
 }  // namespace
 
 void merge(TrainedModel& model, const TrainedModel& other) {
-  for (const TrainedModel* each : {static_cast<const TrainedModel*>(&model), &other}) {
-    if (!each->hasEvidence() && (each->isWatched() || !each->hasDelays())) {
-      throw std::invalid_argument("loaded without its counts");
-    }
-  }
   requireSameEncoding(model.encoding, other.encoding);
-  const core::paper::Binning& binning = model.statistics.binning();
-  const core::paper::Binning& others = other.statistics.binning();
-  requireSame("length of the windows", model.window, other.window, "0 s");
-  requireSame("bin size", binning.bin_size, others.bin_size, "0 s");
-  requireSame("horizon", horizon(binning), horizon(others), "none");
-  if (model.hasEvidence() != other.hasEvidence() || model.hasDelays() != other.hasDelays()) {
-    throw std::invalid_argument("trained for another detector: " + other.detectors() + ", not " +
-                                model.detectors() + "; train both with the same --detector");
-  }
-  core::Vocabulary vocabulary = model.statistics.vocabulary();
-  for (const core::EventType& type : other.statistics.vocabulary().types()) {
+  core::Vocabulary vocabulary = model.vocabulary();
+  for (const core::EventType& type : other.vocabulary().types()) {
     vocabulary.intern(type);
   }
   checkEventTypes(model.encoding, vocabulary);
-
-  model.statistics.merge(other.statistics);
-  core::evidence::merge(model.evidence, model.onlyHalf(), other.evidence, other.onlyHalf());
-  for (const auto& [publisher, topic, subscriber] : other.graph.edges()) {
-    model.graph.connect(publisher, topic, subscriber);
-  }
-  for (const auto& [source, host] : other.graph.hosts()) {
-    model.graph.place(source, host);
-  }
-  for (const core::SourceGraph::Publication& publication : other.graph.unheard()) {
-    model.graph.addUnheard(publication);
-  }
-  for (const auto& [subscription, recordings] : other.graph.lasting()) {
-    model.graph.addLasting(subscription, recordings);
-  }
-  model.recordings.insert(model.recordings.end(), other.recordings.begin(),
-                          other.recordings.end());
-  if (model.tuning != other.tuning) {
-    model.tuning = {};
-  }
-  dropCalibrations(model);
-  model.stamp = std::max(model.stamp, other.stamp);
+  model.add(other);
+  model.left_out.clear();
   model.version.method = std::min(model.version.method, other.version.method);
 }
 
@@ -138,7 +73,8 @@ void rename(TrainedModel& model, const std::vector<Rename>& rules) {
   model.evidence[1].rename(renamed_types[2]);
   model.graph = renamed(model.graph, encoder);
   model.encoding.renames.insert(model.encoding.renames.end(), rules.begin(), rules.end());
-  dropCalibrations(model);
+  model.dropWatched();
+  model.left_out.clear();
 }
 
 }  // namespace self_awareness::ros1

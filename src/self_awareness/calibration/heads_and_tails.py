@@ -91,36 +91,47 @@ def without(recording: RecordingEvents, begin: Optional[StartUp]) -> RecordingEv
 
 
 @dataclass(frozen=True)
-class HeadAndTail:
-    """How a recording hears a component.
+class Silence:
+    """The longest time without an event of a type in a recording; all in s.
 
     Args:
-        head_s: until its first message [s].
-        tail_s: since its last one [s].
-        longest_s: its longest silence in between [s].
+        begin_s: from the recording's first message.
+        length_s: of it.
+        head_s: until the first event of the type, which is no such time.
+        tail_s: since the last one, neither.
     """
 
-    head_s: float
-    tail_s: float
-    longest_s: float
+    begin_s: float
+    length_s: float
+    head_s: float = 0.0
+    tail_s: float = 0.0
 
 
-HeadsAndTails = Mapping[str, HeadAndTail]
-"""By component; of what came often."""
+Silences = Mapping[EventType, Silence]
+"""Those of a recording, of what came often in it."""
 
 
-def find(recording: RecordingEvents) -> HeadsAndTails:
-    """Return the heads and tails of a recording, or of a part of it."""
-    found: Dict[str, HeadAndTail] = {}
+def silences(recording: RecordingEvents) -> Silences:
+    """Return the longest silence of every event type that came often in a recording, or a part."""
+    found: Dict[EventType, Silence] = {}
     for kind, stamps in often(recording):
-        cut = HeadAndTail(*(float(length) / SECOND_NS for length in (
-            stamps[0] - recording.stamps[0], recording.stamps[-1] - stamps[-1],
-            np.diff(stamps).max())))
-        other = found.get(component_of(kind), cut)
-        found[component_of(kind)] = HeadAndTail(min(cut.head_s, other.head_s),
-                                                min(cut.tail_s, other.tail_s),
-                                                min(cut.longest_s, other.longest_s))
+        gaps = np.diff(stamps)
+        longest = int(np.argmax(gaps))
+        found[kind] = Silence(*(float(length) / SECOND_NS for length in (
+            stamps[longest] - recording.origin, gaps[longest],
+            stamps[0] - recording.stamps[0], recording.stamps[-1] - stamps[-1])))
     return found
+
+
+def _of_components(found: Silences) -> Dict[str, Silence]:
+    """Return the shortest of each component: who sends anything is no longer silent."""
+    shortest: Dict[str, Silence] = {}
+    for kind, each in found.items():
+        other = shortest.get(component_of(kind), each)
+        shortest[component_of(kind)] = Silence(
+            each.begin_s, min(each.length_s, other.length_s), min(each.head_s, other.head_s),
+            min(each.tail_s, other.tail_s))
+    return shortest
 
 
 def start_up_lines(found: Sequence[Tuple[BagPart, Optional[StartUp]]]) -> List[str]:
@@ -140,19 +151,18 @@ def start_up_lines(found: Sequence[Tuple[BagPart, Optional[StartUp]]]) -> List[s
             '--start 0 trains on it, --start S leaves out S seconds of each']
 
 
-def lines(recordings: Sequence[Tuple[BagPart, HeadsAndTails]], start: str,
-          end: str) -> List[str]:
+def lines(recordings: Sequence[Tuple[BagPart, Silences]], start: str, end: str) -> List[str]:
     """Return a line for everybody who starts after recordings do, or ends before them.
 
     Args:
-        recordings: with their heads and tails.
+        recordings: with their silences.
         start, end: what leaves a head or a tail out, on the command line.
     """
     found = []
-    for component in sorted({name for _, of_part in recordings for name in of_part}):
-        heard = [(part, of_part[component]) for part, of_part in recordings
-                 if component in of_part]
-        longest_s = max(cut.longest_s for _, cut in heard)
+    of_parts = [(part, _of_components(each)) for part, each in recordings]
+    for component in sorted({name for _, of_part in of_parts for name in of_part}):
+        heard = [(part, of_part[component]) for part, of_part in of_parts if component in of_part]
+        longest_s = max(cut.length_s for _, cut in heard)
         for does, cut_s, option in (
                 ('starts after the recording does', [cut.head_s for _, cut in heard], start),
                 ('ends before the recording does', [cut.tail_s for _, cut in heard], end)):

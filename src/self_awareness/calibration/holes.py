@@ -10,36 +10,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
-import numpy as np
-
 from self_awareness import Coverage, EventType, TrainedModel
 from self_awareness.calibration import heads_and_tails
+from self_awareness.calibration.heads_and_tails import Silence, Silences, component_of
 from self_awareness.parts import BagPart
-from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
 _FEWEST_OTHERS = 2
 _SHORTEST_PART_S = 5.0
-
-Key = Tuple[str, str, str]
-"""Source, scope and type of an event type."""
-
-
-@dataclass(frozen=True)
-class Silence:
-    """The longest time without an event of a type in a recording.
-
-    Args:
-        begin_s: from the recording's first message [s].
-        length_s: of it [s].
-    """
-
-    begin_s: float
-    length_s: float
-
-
-Silences = Mapping[Key, Silence]
-"""Those of a recording, of what came often in it."""
 
 
 @dataclass(frozen=True)
@@ -48,42 +26,31 @@ class Hole:
 
     Args:
         part: the recording.
-        key: the event type.
-        silence: see above.
+        kind: the event type.
+        silence: of the event type, the longest of the recording.
         others_s: the longest silence of all other recordings [s].
     """
 
     part: BagPart
-    key: Key
+    kind: EventType
     silence: Silence
     others_s: float
 
     @property
     def component(self) -> str:
         """The component that was silent."""
-        return self.key[0] or self.key[1]
+        return component_of(self.kind)
 
 
-def longest_silences(recording: RecordingEvents) -> Silences:
-    """Return the longest silence of every event type that came often."""
-    found: Dict[Key, Silence] = {}
-    for kind, stamps in heads_and_tails.often(recording):
-        gaps = np.diff(stamps)
-        longest = int(np.argmax(gaps))
-        found[_key(kind)] = Silence((stamps[longest] - recording.origin) / SECOND_NS,
-                                    gaps[longest] / SECOND_NS)
-    return found
-
-
-def known_silences(trained: TrainedModel) -> Dict[Key, float]:
+def known_silences(trained: TrainedModel) -> Dict[EventType, float]:
     """Return the longest gap that the training showed of every event type that is judged [s]."""
-    return {_key(each): trained.longest_gap(index) / SECOND_NS
+    return {each: trained.longest_gap(index) / SECOND_NS
             for index, each in enumerate(trained.event_types)
             if trained.gaps(index) >= trained.fewest_gaps}
 
 
 def find(recordings: Sequence[Tuple[BagPart, Silences]],
-         known_s: Optional[Mapping[Key, float]] = None) -> List[Hole]:
+         known_s: Optional[Mapping[EventType, float]] = None) -> List[Hole]:
     """Return the holes of some recordings.
 
     Args:
@@ -91,21 +58,21 @@ def find(recordings: Sequence[Tuple[BagPart, Silences]],
         known_s: see known_silences(): they are worth as much as enough other recordings. None:
             the recordings are all that there is.
     """
-    shown: Dict[Key, List[Tuple[Silence, BagPart]]] = {}
+    shown: Dict[EventType, List[Tuple[Silence, BagPart]]] = {}
     for part, silences in recordings:
-        for key, silence in silences.items():
-            shown.setdefault(key, []).append((silence, part))
+        for kind, silence in silences.items():
+            shown.setdefault(kind, []).append((silence, part))
     found = []
-    for key, of_type in shown.items():
+    for kind, of_type in shown.items():
         # Only the longest can be longer than all others.
         *others, (longest, part) = sorted(of_type, key=lambda each: each[0].length_s)
         lengths_s = [silence.length_s for silence, _ in others]
-        if known_s is not None and key in known_s:
-            lengths_s += [known_s[key]] * _FEWEST_OTHERS
+        if known_s is not None and kind in known_s:
+            lengths_s += [known_s[kind]] * _FEWEST_OTHERS
         most_s = max(lengths_s, default=0.0)
         if (len(lengths_s) >= _FEWEST_OTHERS
                 and heads_and_tails.is_longer(longest.length_s, most_s)):
-            found.append(Hole(part, key, longest, most_s))
+            found.append(Hole(part, kind, longest, most_s))
     return found
 
 
@@ -147,7 +114,7 @@ def _decides(hole: Hole, found_s: Optional[float]) -> bool:
 
 def _line(hole: Hole, found_s: Optional[float]) -> str:
     silence = hole.silence
-    text = (f'{hole.part}: {hole.component} ({hole.key[1]}) is silent for '
+    text = (f'{hole.part}: {hole.component} ({hole.kind.scope}) is silent for '
             f'{silence.length_s:.1f} s from {silence.begin_s:.1f} s on, {hole.others_s:.2g} s at '
             'most in the other recordings')
     if found_s is None:
@@ -168,7 +135,3 @@ def _pieces(part: BagPart, silences: Sequence[Silence]) -> List[BagPart]:
     if not silences or part.end is None or part.end - (part.start or 0.0) >= _SHORTEST_PART_S:
         pieces.append(part)
     return pieces
-
-
-def _key(event_type: EventType) -> Key:
-    return event_type.source, event_type.scope, event_type.type

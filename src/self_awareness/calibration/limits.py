@@ -7,14 +7,13 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, field
-from typing import Any, Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Iterable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from self_awareness import (OTHER_MODE, Calibration, Calibrator, LimitFindings, TrainedModel,
                             Waiting, recordings)
-from self_awareness.calibration.heads_and_tails import HeadsAndTails, StartUp
-from self_awareness.calibration.holes import Silences
+from self_awareness.calibration.heads_and_tails import Silences, StartUp
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
 from self_awareness.workers import InProcess, Workers
@@ -45,8 +44,7 @@ class HeldOut:
 
     def judge(self, _: TrainedModel, calibrator: Calibrator) -> None:
         """Let it be judged."""
-        calibrator.add_held_out(self.stamps, self.ids, self.robot_start, list(self.clock_steps),
-                                self.robot, self.attributes, list(self.waiting))
+        _add(calibrator, self, self.ids, None)
 
 
 @dataclass(frozen=True)
@@ -55,19 +53,15 @@ class TrainedOn:
 
     Args:
         part: the bag, or the part of it.
-        fingerprint: of the whole bag.
         events: of the part, by ids of their own; None: read when they are needed, as the memory
             may not hold those of all recordings.
         silences: the longest one of every event type.
-        heads_and_tails: of every component.
         start_up: that was left out before it; None: nothing was.
     """
 
     part: BagPart
-    fingerprint: int
     events: Optional[RecordingEvents] = None
     silences: Silences = field(default_factory=dict)
-    heads_and_tails: HeadsAndTails = field(default_factory=dict)
     start_up: Optional[StartUp] = None
 
     def __str__(self) -> str:
@@ -82,9 +76,14 @@ class TrainedOn:
         else:
             known = {kind: index for index, kind in enumerate(trained.event_types)}
             ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
-        calibrator.add_trained_on(events.stamps, ids, self.fingerprint, events.robot_start,
-                                  list(events.clock_steps), events.robot,
-                                  events.attributes, list(events.waiting))
+        _add(calibrator, events, ids, events.fingerprint)
+
+
+def _add(calibrator: Calibrator, recording: Union[HeldOut, RecordingEvents], ids: np.ndarray,
+         fingerprint: Optional[int]) -> None:
+    calibrator.add(recording.stamps, ids, fingerprint, recording.robot_start,
+                   list(recording.clock_steps), recording.robot, recording.attributes,
+                   list(recording.waiting))
 
 
 def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
@@ -117,26 +116,6 @@ def _ids(trained: TrainedModel, recording: RecordingEvents) -> np.ndarray:
              and recording.event_types[index].tells_mode]
     return (np.where(np.isin(recording.ids, other), OTHER_MODE, recording.ids).astype(np.uint32)
             if other else recording.ids)
-
-
-def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_time: int,
-              budget: float, workers: Optional[Workers] = None) -> Calibration:
-    """Return limits by recordings of the training, each judged by the half it does not belong to.
-
-    Args:
-        trained: the model; its last recordings are those of trained_on.
-        trained_on: all recordings of the training, or the last.
-        settle_time: left out at the start of every recording [ns].
-        budget: false alarms an hour that the limits allow.
-        workers: who does the work; None: this process.
-
-    Raises:
-        BagError: a recording cannot be read any more.
-        TooLittleError: the recordings are too short.
-    """
-    calibration, = find(trained, settle_time, [budget], trained_on, workers, keep_findings=True)
-    calibration.recordings = trained.recordings[-len(trained_on):]
-    return calibration
 
 
 def find(trained: TrainedModel, settle_time: int, budgets: Sequence[float], tasks: Sequence[Any],

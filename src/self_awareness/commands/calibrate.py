@@ -14,6 +14,7 @@ from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, 
                             accepted_file)
 from self_awareness.calibration import confidence, heads_and_tails, holes, limits
 from self_awareness.calibration.fault_injection import FORMS, InjectedFault, of_known_source
+from self_awareness.calibration.heads_and_tails import Silences
 from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
                                                 fault_results, labelled)
 from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, Injections,
@@ -24,7 +25,6 @@ from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, load_model, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, save_table
 from self_awareness.parts import BagPart, Named, by_folder, look
-from self_awareness.recordings import RecordingEvents
 from self_awareness.reporting import coverage_text, evidence_report
 from self_awareness.reporting.plots import save_roc
 from self_awareness.reporting.text import cell, rounded
@@ -94,10 +94,10 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                                 accepted)
         coverage = measured.by_budget[arguments.budget]
         evidence_report.print_verdict(trained, coverage)
-        for line in heads_and_tails.lines([(each.part, heads_and_tails.find(each))
-                                           for each in normal], 'BAG@START', 'BAG@0-END'):
+        silences = [(each.part, heads_and_tails.silences(each)) for each in normal]
+        for line in heads_and_tails.lines(silences, 'BAG@START', 'BAG@0-END'):
             print(line)
-        _say_holes(trained, normal)
+        _say_holes(trained, silences)
         evidence_report.print_coverage(trained, coverage)
         evidence_report.print_budgets(measured.by_budget)
         evidence_report.print_measured(measured.normal, measured.false_alarms)
@@ -151,14 +151,13 @@ def _keep_accepted(arguments: argparse.Namespace, trained: TrainedModel) -> None
             print(line)
 
 
-def _say_holes(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None:
-    found = holes.find([(each.part, holes.longest_silences(each)) for each in normal],
-                       holes.known_silences(trained))
+def _say_holes(trained: TrainedModel, silences: Sequence[Tuple[BagPart, Silences]]) -> None:
+    found = holes.find(silences, holes.known_silences(trained))
     coverage = trained.coverage()
     for line in holes.lines(found, coverage):
         cli.warn('calibrate', line)
     if holes.deciding(found, coverage):
-        left = ' '.join(str(part) for part in holes.without([each.part for each in normal], found))
+        left = ' '.join(map(str, holes.without([part for part, _ in silences], found)))
         cli.warn('calibrate', f'if that was a fault, leave it out: --normal {left}')
 
 

@@ -7,8 +7,8 @@ import shutil
 from collections import Counter
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import (EventType, ModelFileError, PaperModel, ResultBag, TrainedModel,
-                            recordings_in_event_log)
+from self_awareness import (EventType, EvidenceModel, ModelFileError, PaperModel, ResultBag,
+                            TrainedModel, recordings_in_event_log)
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.learning.age import age_of, logs_of
@@ -304,7 +304,7 @@ def _print_pair(model: TrainedModel, first: int, second: int) -> None:
     print(f'delay from the last  {model.event_types[first]}')
     print(f'to the current       {model.event_types[second]}')
     if model.detectors == EVIDENCE:
-        bins = delay_bins.log_bins(model.delays(first, second))
+        bins = delay_bins.log_bins(EvidenceModel.of_all_pairs(model).delays(first, second))
     else:
         bins = delay_bins.paper_bins(model, first, second)
         computed = PaperModel(model)

@@ -14,7 +14,7 @@ from self_awareness.calibration.heads_and_tails import START_UP_S
 from self_awareness.commands import cli, ros_node
 from self_awareness.learning import programs
 from self_awareness.learning.leaving import limit_goodbye
-from self_awareness.learning.learner import Learner, Plan
+from self_awareness.learning.node import LearningNode, Plan
 from self_awareness.learning.recorder import RecorderCrash
 from self_awareness.output_files import MODEL, check_outputs
 
@@ -48,7 +48,7 @@ def _learn(arguments: argparse.Namespace) -> None:
     if os.path.exists(model):
         rospy.loginfo('%s is there: this is the monitor; remove it to learn again', model)
     else:
-        if not Learner(_plan(arguments, model)).run():
+        if not LearningNode(_plan(arguments, model)).run():
             return
         rospy.loginfo('%s is learned: this is the monitor from now on', model)
     _become_monitor()

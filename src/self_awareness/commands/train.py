@@ -5,11 +5,12 @@ import argparse
 import os
 from contextlib import closing
 from dataclasses import replace
-from typing import Dict, List, Optional, Sequence
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from self_awareness import (BagError, EncodingRules, TrainedModel, accepted_file, encoding_file,
                             progress)
 from self_awareness.calibration import heads_and_tails, holes
+from self_awareness.calibration.heads_and_tails import Silences
 from self_awareness.calibration.holes import Hole
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
@@ -63,7 +64,7 @@ def _train(arguments: argparse.Namespace) -> None:
                          more=tuple(map(os.path.abspath, part.more))) for part in parts]
     with closing(_workers(arguments, len(parts))) as workers:
         trained = many_bags.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
-        found = holes.find([(each.part, each.silences) for each in trained.trained_on])
+        found = holes.find(_silences(trained))
         if found and arguments.leave_out_holes:
             parts = holes.without([each.part for each in trained.trained_on], found)
             base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
@@ -97,14 +98,16 @@ def _train(arguments: argparse.Namespace) -> None:
         print(line)
     for line in (heads_and_tails.start_up_lines(
             [(each.part, each.start_up) for each in trained.trained_on])
-            + heads_and_tails.lines(
-                [(each.part, each.heads_and_tails) for each in trained.trained_on],
-                '--start', '--end')):
+            + heads_and_tails.lines(_silences(trained), '--start', '--end')):
         print(line)
     _say_holes(found, model, arguments.leave_out_holes)
     cli.say_skipped('train', named.bad + trained.bad)
     print(f'written: {arguments.output}; next, find limits on recordings that it was not trained '
           'on (rosrun self_awareness calibrate)')
+
+
+def _silences(trained: Trained) -> List[Tuple[BagPart, Silences]]:
+    return [(each.part, each.silences) for each in trained.trained_on]
 
 
 def _say_holes(found: Sequence[Hole], model: TrainedModel, left_out: bool) -> None:

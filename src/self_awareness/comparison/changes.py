@@ -11,7 +11,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
-from self_awareness import RATE_SPAN, USUAL_SHARES, EvidenceCounts
+from self_awareness import RATE_SPAN, USUAL_SHARES, EvidenceModel
 from self_awareness.comparison import chance
 from self_awareness.comparison.sides import End, Kind, Side
 from self_awareness.stamps import SECOND_NS
@@ -166,7 +166,7 @@ def _measured_rate(side: Side, kind: Kind) -> _Measured:
     index = side.ids[kind]
     spread = side.all.rate_variance(index)
 
-    def rate(counts: EvidenceCounts) -> Tuple[float, float]:
+    def rate(counts: EvidenceModel) -> Tuple[float, float]:
         duration = max(counts.duration / SECOND_NS, _SPAN_S)
         return (counts.events(index) / duration,
                 chance.rate_variance(spread, _SPAN_S, duration))
@@ -175,7 +175,7 @@ def _measured_rate(side: Side, kind: Kind) -> _Measured:
 
 
 def _measured(side: Side,
-              measure: Callable[[EvidenceCounts], Tuple[float, float]]) -> _Measured:
+              measure: Callable[[EvidenceModel], Tuple[float, float]]) -> _Measured:
     """Measure value and variance of all counts of a side, and of its halves."""
     value, variance = measure(side.all)
     (first, first_variance), (second, second_variance) = [measure(half) for half in side.halves]
@@ -207,7 +207,7 @@ def _shift(what: str, before: Side, after: Side, pair: Tuple[Kind, Kind],
 
 
 def _measured_share(side: Side, pair: Tuple[int, int], edge: int) -> _Measured:
-    def share(counts: EvidenceCounts) -> Tuple[float, float]:
+    def share(counts: EvidenceModel) -> Tuple[float, float]:
         number = counts.delay_count(*pair)
         beyond = sum(count for begin, count in counts.delays(*pair) if begin >= edge)
         return beyond / number, chance.share_variance(beyond / number, number)

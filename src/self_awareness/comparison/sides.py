@@ -1,20 +1,20 @@
 """The two sides of a comparison: models, or a model and a recording that is counted like one."""
 from __future__ import annotations
 
-import copy
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Dict, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (EventType, EvidenceCounts, EvidenceModel, TrainedModel,
-                            Training, recordings, recordings_in_event_log)
+from self_awareness import (EventType, EvidenceModel, TrainedModel, recordings,
+                            recordings_in_event_log)
 from self_awareness.judging import EVIDENCE, load_model
 from self_awareness.parts import BagPart, Named, look
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
+from self_awareness.training.counting import Counting
 
 Kind = Tuple[str, str, str]
 """Source, scope and type of an event type."""
@@ -50,14 +50,14 @@ class Side:
     ends: Dict[Kind, End] = field(default_factory=dict)
 
     @cached_property
-    def halves(self) -> Tuple[EvidenceCounts, EvidenceCounts]:
+    def halves(self) -> Tuple[EvidenceModel, EvidenceModel]:
         """Return the counts of the two halves."""
-        return EvidenceCounts(self.model, 0), EvidenceCounts(self.model, 1)
+        return EvidenceModel.of_all_pairs(self.model, 0), EvidenceModel.of_all_pairs(self.model, 1)
 
     @cached_property
-    def all(self) -> EvidenceCounts:
+    def all(self) -> EvidenceModel:
         """Return the counts of both halves."""
-        return EvidenceCounts(self.model)
+        return EvidenceModel.of_all_pairs(self.model)
 
     @cached_property
     def ids(self) -> Dict[Kind, int]:
@@ -151,19 +151,19 @@ def _recording_side(name: str, named: Named, like: TrainedModel, skip_bad: bool 
         BadRecordingsError: one cannot be used, and is not to be left out, or none can.
     """
     named.check(skip_bad)
-    training = Training(copy.copy(like.encoding), like.bin_size, like.window, like.horizon_bins,
-                        True, False, like.tuning)
+    learner = replace(Counting.of(like), detector=EVIDENCE).learner(like.encoding)
     ends: Dict[Kind, End] = {}
     counted = 0
     for recording in named.each(lambda part: recordings.read(like, part)):
         counted += 1
-        training.add_events(recording.event_types, recording.stamps, recording.ids,
-                            recording.recording, clock_steps=recording.clock_steps)
+        learner.count(recording.event_types, recording.stamps, recording.ids,
+                      recording.fingerprint, recording.robot_start, recording.clock_steps,
+                      recording.robot, bag=recording.bag)
         for kind, end in _ends(recording):
             if kind not in ends or end.silent > ends[kind].silent:
                 ends[kind] = end
     named.check(skip_bad and counted > 0)
-    return Side(name, training.model(watch=False), True, ends)
+    return Side(name, learner.model(watch=False), True, ends)
 
 
 def _ends(recording: RecordingEvents) -> Iterator[Tuple[Kind, End]]:

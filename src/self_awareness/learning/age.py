@@ -6,9 +6,9 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Dict, List, Sequence
 
-from self_awareness import (Acceptance, BagError, ComponentDrift, DetectorParameters, DriftSamples,
-                            EvidenceModel, Recording, TrainedModel, accepted_file, evidence_lanes,
-                            recordings)
+from self_awareness import (Acceptance, BagError, ComponentDrift, DetectorParameters,
+                            EvidenceModel, Recording, TrainedModel, accepted_file, drift_of,
+                            evidence_lanes, recordings)
 from self_awareness.judging import evidence_judge
 from self_awareness.parts import BagPart, Named, look
 from self_awareness.recordings import RecordingEvents, overlap
@@ -140,11 +140,9 @@ def age_of(path: str, trained: TrainedModel, named: Named, skip_bad: bool = Fals
                          'of one')
     counted = [each for each in heard if not each.left_out]
     components = list(counted[0].shares) if counted else []
-    samples = DriftSamples(len(components))
-    for each in counted:
-        samples.add(each.origin, each.recording.end, each.recording.robot_start,
-                    [each.shares[name] for name in components])
-    drift = samples.drift
+    drift = drift_of(len(components), [
+        (each.origin, each.recording.end, each.recording.robot_start,
+         [each.shares[name] for name in components]) for each in counted])
     learned = [*trained.recordings, *trained.calibration.recordings]
     return Age(trained.calibration.budget, max((each.end for each in learned), default=0), heard,
                {name: drift.component(number) for number, name in enumerate(components)},

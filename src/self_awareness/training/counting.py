@@ -5,8 +5,9 @@ import copy
 from dataclasses import dataclass, field
 from typing import Optional, Tuple
 
-from self_awareness import (DEFAULT_WINDOW, EncodingRules, TrainedModel, Tuning, summarise_bag)
-from self_awareness.judging import EVIDENCE
+from self_awareness import (DEFAULT_WINDOW, EncodingRules, Learner, TrainedModel, Tuning,
+                            summarise_bag)
+from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.parts import BagPart
 
 
@@ -49,6 +50,11 @@ class Counting:
         """Return how the bags of a model were counted."""
         return cls(copy.copy(model.encoding), model.bin_size, model.window, model.horizon_bins,
                    model.detectors, model.tuning)
+
+    def learner(self, encoding: EncodingRules) -> Learner:
+        """Return who counts by an encoding, which these rules have become for a recording."""
+        return Learner(self.tuning, set(), self.window, encoding, self.bin_size,
+                       self.horizon_bins, self.detector != PAPER, self.detector != EVIDENCE)
 
     def encoding_of(self, part: BagPart) -> EncodingRules:
         """Return the rules for a recording: those of its event log where none are given.

@@ -15,11 +15,11 @@ from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import (BagError, BagSummary, Calibration, DetectorParameters, EncodingRules,
-                            Recording, TrainedModel, Training, lasting_subscriptions, progress,
-                            read_events, recordings)
-from self_awareness.calibration import heads_and_tails, holes, limits
+                            Recording, TrainedModel, lasting_subscriptions, progress, read_events,
+                            recordings)
+from self_awareness.calibration import heads_and_tails, limits
 from self_awareness.calibration.limits import TrainedOn
-from self_awareness.judging import BOTH, EVIDENCE, PAPER
+from self_awareness.judging import PAPER
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents, check_windows, overlap
 from self_awareness.stamps import SECOND_NS
@@ -110,8 +110,9 @@ def preliminary_limits(trained: Trained, workers: Optional[Workers] = None) -> C
         BagError: a recording cannot be read any more.
         TooLittleError: the recordings are too short.
     """
-    found = limits.cross_fit(trained.model, trained.trained_on, DetectorParameters().settle_time,
-                             limits.BUDGET, workers)
+    found, = limits.find(trained.model, DetectorParameters().settle_time, [limits.BUDGET],
+                         trained.trained_on, workers, keep_findings=True)
+    found.recordings = trained.model.recordings[-len(trained.trained_on):]
     trained.model.calibration = found
     return found
 
@@ -257,21 +258,11 @@ def _count(how: _How, part: BagPart) -> _Sum:
         begin = heads_and_tails.start_up(whole)
         events = heads_and_tails.without(whole, begin)
         part = events.part
-        recording = Recording()
-        recording.bag = events.bag
-        recording.start = int(events.stamps[0])
-        recording.end = int(events.stamps[-1])
-        recording.events = len(events.stamps)
-        recording.fingerprint = events.fingerprint
-        recording.robot_start = events.robot_start
-        recording.robot = events.robot
-        training = Training(encoding, counting.bin_size, counting.window, counting.horizon_bins,
-                            counting.detector in (EVIDENCE, BOTH),
-                            counting.detector in (PAPER, BOTH), counting.tuning)
-        training.add_events(events.event_types, events.stamps, events.ids,
-                            recording, _before(encoding, whole, events), events.clock_steps,
-                            events.attributes)
-        model = training.model(watch=False)
+        learner = counting.learner(encoding)
+        learner.count(events.event_types, events.stamps, events.ids, events.fingerprint,
+                      events.robot_start, events.clock_steps, events.robot, events.attributes,
+                      events.bag, _before(encoding, whole, events))
+        model = learner.model(watch=False)
         graph = _graph(part, summary)
         model.graph = graph.edges(encoding)
         model.hosts = graph.hosts_of_sources(encoding)
@@ -281,8 +272,8 @@ def _count(how: _How, part: BagPart) -> _Sum:
         raise _BadBag(str(error)) from error
     except ValueError as error:
         raise _BadBag(f'{part}: {error}') from error
-    seconds = (recording.end - recording.start) / SECOND_NS
-    lines = [f'{part}: {seconds:.1f} s, {recording.events} events']
+    seconds = (events.stamps[-1] - events.stamps[0]) / SECOND_NS
+    lines = [f'{part}: {seconds:.1f} s, {len(events.stamps)} events']
     told = recordings.clock_steps(events)
     if told is not None:
         lines.append(f'{part}: warning: {told.split(": ", 1)[1]}')
@@ -292,9 +283,8 @@ def _count(how: _How, part: BagPart) -> _Sum:
     lines += [f'{part}: warning: {reason}; it is left out' for reason in summary.left_out]
     if events.copied and encoding.source != 'none':
         lines.append(f'{part}: {_COPIED}')
-    trained_on = TrainedOn(part, events.fingerprint, events, holes.longest_silences(events),
-                           heads_and_tails.find(events), begin)
-    return _Sum(recording.events, model, [trained_on], lines)
+    trained_on = TrainedOn(part, events, heads_and_tails.silences(events), begin)
+    return _Sum(len(events.stamps), model, [trained_on], lines)
 
 
 def _before(encoding: EncodingRules, whole: RecordingEvents,

@@ -58,7 +58,7 @@ def test_the_start_is_left_out() -> None:
 def test_who_starts_after_recordings_or_ends_before_them_is_told() -> None:
     parts = [recorded('a', 0.0, move=(0.0, 94.0)), recorded('b', 0.0, move=(20.0, 100.0)),
              recorded('c', 0.0, move=(0.0, 91.0)), recorded('d', 0.0)]
-    lines = heads_and_tails.lines([(each.part, heads_and_tails.find(each)) for each in parts],
+    lines = heads_and_tails.lines([(each.part, heads_and_tails.silences(each)) for each in parts],
                                   '--start', '--end')
     assert lines == [
         '/move starts after the recording does in 1 of 3: b@0 by 20.0 s. That counts as no pause '

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from self_awareness import Coverage, EventType
-from self_awareness.calibration import holes
-from self_awareness.calibration.holes import Silence
+from self_awareness.calibration import heads_and_tails, holes
+from self_awareness.calibration.heads_and_tails import Silence
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
-GPS, SCAN = ('/gps', '/fix', 'T'), ('/laser', '/scan', 'T')
+GPS, SCAN = EventType('/gps', '/fix', 'T'), EventType('/laser', '/scan', 'T')
 ORIGIN = 1_600_000_000 * SECOND_NS
 
 
@@ -26,14 +26,14 @@ def recorded(name: str, *silent: Tuple[float, float], seconds: float = 100.0) ->
     stamps = np.concatenate([gps, ticks + 0.01])
     order = np.argsort(stamps, kind='stable')
     ids = np.repeat(np.array([0, 1], dtype=np.uint32), [len(gps), len(ticks)])[order]
-    return RecordingEvents(BagPart(name), [EventType(*GPS), EventType(*SCAN)],
+    return RecordingEvents(BagPart(name), [GPS, SCAN],
                            ORIGIN + (stamps[order] * SECOND_NS).astype(np.int64), ids, ORIGIN,
                            ORIGIN + int(seconds * SECOND_NS), 1)
 
 
 def found(*recordings: RecordingEvents) -> List[holes.Hole]:
     """Return the holes of some recordings."""
-    return holes.find([(each.part, holes.longest_silences(each)) for each in recordings])
+    return holes.find([(each.part, heads_and_tails.silences(each)) for each in recordings])
 
 
 def known(component: str, found_s: float) -> Coverage:
@@ -42,19 +42,19 @@ def known(component: str, found_s: float) -> Coverage:
 
 
 def test_the_longest_silence_of_every_type_is_known() -> None:
-    silences = holes.longest_silences(recorded('a.bag', (40.0, 46.0), (60.0, 62.0)))
+    silences = heads_and_tails.silences(recorded('a.bag', (40.0, 46.0), (60.0, 62.0)))
     assert silences[GPS].begin_s == pytest.approx(39.8, abs=1e-3)
     assert silences[GPS].length_s == pytest.approx(6.2, abs=1e-3)
     assert silences[SCAN].length_s == pytest.approx(0.2, abs=1e-3)
 
 
 def test_what_a_recording_cuts_off_is_no_hole() -> None:
-    silences = holes.longest_silences(recorded('a.bag', (0.0, 20.0), (60.0, 200.0)))
+    silences = heads_and_tails.silences(recorded('a.bag', (0.0, 20.0), (60.0, 200.0)))
     assert silences[GPS].length_s == pytest.approx(0.2, abs=1e-3)
 
 
 def test_what_came_seldom_says_nothing() -> None:
-    assert GPS not in holes.longest_silences(recorded('a.bag', (5.0, 200.0)))
+    assert GPS not in heads_and_tails.silences(recorded('a.bag', (5.0, 200.0)))
 
 
 def test_a_hole_is_what_one_recording_alone_shows() -> None:
@@ -69,7 +69,7 @@ def test_a_hole_is_what_one_recording_alone_shows() -> None:
 
 def test_what_the_training_showed_is_as_good_as_other_recordings() -> None:
     part = recorded('c.bag', (40.0, 46.0))
-    silences = [(part.part, holes.longest_silences(part))]
+    silences = [(part.part, heads_and_tails.silences(part))]
     assert [hole.component for hole in holes.find(silences, {GPS: 0.3, SCAN: 0.3})] == ['/gps']
     assert not holes.find(silences, {GPS: 3.0})
     assert not holes.find(silences, {})

@@ -15,9 +15,8 @@ from hypothesis import strategies as st
 from reference import Reference
 from reference_evidence import BINS, Counts, is_mode, lower_edge, stalls_of
 
-from self_awareness import (Calibrator, DetectorParameters, EncodingRules, EventType,
-                            EvidenceCounts, EvidenceModel, PaperModel, Recording, TrainedModel,
-                            Training, Verdicts)
+from self_awareness import (Calibrator, DetectorParameters, EventType, EvidenceModel, Learner,
+                            PaperModel, TrainedModel, Verdicts)
 
 WINDOW = 100 * MS
 BIN = 10 * MS
@@ -45,16 +44,10 @@ def arrays(events: Sequence[Event]) -> Tuple[np.ndarray, np.ndarray]:
 def trained_on(all_events: Sequence[Sequence[Event]],
                fingerprints: Sequence[int] = ()) -> TrainedModel:
     """Train both detectors on recordings; those with a fingerprint belong to a half by it."""
-    training = Training(EncodingRules(), BIN, WINDOW, paper=True)
+    learner = Learner(window=WINDOW, bin_size=BIN, paper=True)
     for number, events in enumerate(all_events):
-        recording = None
-        if fingerprints:
-            recording = Recording()
-            recording.fingerprint = fingerprints[number]
-            stamps = sorted(stamp for stamp, _ in events)
-            recording.start, recording.end = stamps[0], stamps[-1]
-        training.add_events(TYPES, *arrays(events), recording)
-    return training.model()
+        learner.count(TYPES, *arrays(events), fingerprints[number] if fingerprints else 0)
+    return learner.model()
 
 
 def ids_of(trained: TrainedModel) -> Dict[str, int]:
@@ -111,7 +104,7 @@ def check_counts(all_events: List[List[Event]]) -> None:
     parts = [piece for events in all_events for piece in pieces(events)]
     reference = Counts(parts, list(ids), WINDOW,
                        [stalls for events in all_events for stalls in stalls_of(pieces(events))])
-    found = EvidenceCounts(trained)
+    found = EvidenceModel.of_all_pairs(trained)
     assert found.duration == sum(seen.end - seen.start for seen in reference.recordings)
     for i in ids:
         assert found.events(ids[i]) == sum(seen.events[i] for seen in reference.recordings)
@@ -193,8 +186,8 @@ def test_limits_are_numbers(all_events: List[List[Event]], normal: List[List[Eve
     calibrator = Calibrator(trained, SETTLE)
     ids = ids_of(trained)
     for events in normal:
-        calibrator.add_held_out(arrays(events)[0],
-                                np.array([ids.get(kind, len(ids)) for _, kind in events]))
+        calibrator.add(arrays(events)[0],
+                       np.array([ids.get(kind, len(ids)) for _, kind in events]))
     try:
         found = calibrator.find(0.5)
     except ValueError as refused:
@@ -223,7 +216,8 @@ def test_models_add_up_to_that_of_one_training(first: List[List[Event]],
         for j in ids:
             pair, other_pair = (ids[i], ids[j]), (other_ids[i], other_ids[j])
             assert merged.histogram(*other_pair) == together.histogram(*pair)
-            assert merged.delays(*other_pair) == together.delays(*pair)
+            assert (EvidenceModel.of_all_pairs(merged).delays(*other_pair)
+                    == EvidenceModel.of_all_pairs(together).delays(*pair))
 
 
 @examples
@@ -247,7 +241,7 @@ def counted(trained: TrainedModel) -> Dict[object, object]:
     ids = ids_of(trained)
     found: Dict[object, object] = {}
     for half in (0, 1, None):
-        counts = EvidenceCounts(trained, half)
+        counts = EvidenceModel.of_all_pairs(trained, half)
         found[half] = counts.duration
         for i in ids:
             found[half, i] = (counts.events(ids[i]), counts.rate_variance(ids[i]))

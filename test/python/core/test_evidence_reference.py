@@ -14,8 +14,7 @@ import pytest
 from reference_evidence import LABELS, LEAST_EFFECT, Counts, Event, ReferenceModel, is_mode
 from reference_scorer import ReferenceScorer
 
-from self_awareness import (EncodingRules, EventType, EvidenceModel, Recording, TrainedModel,
-                            Training, Tuning)
+from self_awareness import EventType, EvidenceModel, Learner, TrainedModel, Tuning
 from self_awareness.stamps import SECOND_NS
 
 MS = 1_000_000
@@ -118,15 +117,13 @@ class Robot:
         tuning = Tuning()
         tuning.set('least_effect', least_effect[0] / SECOND_NS)
         tuning.set('least_effect_of_period', least_effect[1])
-        training = Training(EncodingRules(), window=WINDOW, paper=True, tuning=tuning)
+        learner = Learner(tuning, window=WINDOW, paper=True)
         every_type = [EventType('', letter, f'[mode: {letter}]' if is_mode(letter) else '')
                       for letter in LETTERS]
         for half, events in enumerate(recordings):
-            recording = Recording()
-            recording.fingerprint = half
-            training.add_events(every_type, np.array([t for t, _ in events]),
-                                np.array([LETTERS.index(kind) for _, kind in events]), recording)
-        return training.model()
+            learner.count(every_type, np.array([t for t, _ in events]),
+                          np.array([LETTERS.index(kind) for _, kind in events]), half)
+        return learner.model()
 
     def arrays(self, events: List[Event]) -> Tuple[np.ndarray, np.ndarray]:
         """Return stamps and ids."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from reference import Event, Reference, auc
 
-from self_awareness import DetectorParameters, EncodingRules, EventType, PaperModel, Roc, Training
+from self_awareness import DetectorParameters, EventType, Learner, PaperModel, Roc
 
 MS = 1_000_000
 THRESHOLD = 0.4
@@ -36,12 +36,12 @@ def test_the_core_does_what_the_paper_says(seed: int) -> None:
     window = chance.choice([20, 100]) * MS
     reference = Reference(recordings, bin_size, horizon_bins)
 
-    training = Training(EncodingRules(), bin_size, window, horizon_bins, paper=True)
+    learner = Learner(window=window, bin_size=bin_size, horizon_bins=horizon_bins, paper=True)
     every_type = [EventType('', letter, '') for letter in 'ABCDEU']
     for recording in recordings:
-        training.add_events(every_type, np.array([t for t, _ in recording]),
-                            np.array(['ABCDEU'.index(kind) for _, kind in recording]))
-    trained = training.model()
+        learner.count(every_type, np.array([t for t, _ in recording]),
+                      np.array(['ABCDEU'.index(kind) for _, kind in recording]))
+    trained = learner.model()
     model = PaperModel(trained)
     ids = {kind.scope: index for index, kind in enumerate(trained.event_types)}
 
@@ -86,11 +86,11 @@ def test_the_roc_is_that_of_all_pairs(seed: int) -> None:
 
 
 def test_silence_to_the_end_of_the_recording_has_windows_only_where_it_is_asked_for() -> None:
-    training = Training(EncodingRules(), 10 * MS, 100 * MS, paper=True)
+    learner = Learner(window=100 * MS, bin_size=10 * MS, paper=True)
     types = [EventType('', 'A', '')]
     stamps = np.arange(50) * 20 * MS
-    training.add_events(types, stamps, np.zeros(50))
-    trained = training.model()
+    learner.count(types, stamps, np.zeros(50))
+    trained = learner.model()
     model = PaperModel(trained)
     parameters = DetectorParameters()
     heard = model.judge(trained.window, 0.5, parameters, stamps, np.zeros(50))

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Tuple, Union
 import numpy as np
 import pytest
 
-from self_awareness import DetectorParameters, EncodingRules, EventType, PaperModel, Roc, Training
+from self_awareness import DetectorParameters, EventType, Learner, PaperModel, Roc
 
 MS = 1_000_000
 
@@ -35,11 +35,11 @@ def arrays(case: Dict[str, Any], events: List[Tuple[int, str]]) -> Tuple[np.ndar
 @pytest.mark.parametrize('name', ['alternating', 'two_bags', 'edges_and_overflow'])
 def test_a_case_is_reproduced(vectors: Dict[str, Any], name: str) -> None:
     case = next(case for case in vectors['cases'] if case['name'] == name)
-    training = Training(EncodingRules(), case['bin_ms'] * MS, case['window_ms'] * MS,
-                        case.get('horizon_bins', 0), paper=True)
+    learner = Learner(window=case['window_ms'] * MS, bin_size=case['bin_ms'] * MS,
+                      horizon_bins=case.get('horizon_bins', 0), paper=True)
     for bag in case['train_bags']:
-        training.add_events(types_of(case), *arrays(case, bag))
-    trained = training.model()
+        learner.count(types_of(case), *arrays(case, bag))
+    trained = learner.model()
     model = PaperModel(trained)
     ids = {kind.scope: index for index, kind in enumerate(trained.event_types)}
 

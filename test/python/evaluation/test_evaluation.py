@@ -8,7 +8,7 @@ import pytest
 from evaluation_robot import BATTERY, LASER, START, robot
 
 from self_awareness import (DEFAULT_WINDOW, DetectorParameters, EncodingRules, EventType,
-                            PaperModel, Persistence, Training, read_events)
+                            Learner, PaperModel, Persistence, read_events)
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.detectors import Paper, scenario_graph
 from self_awareness_evaluation.simulated.records import (default_faults, encode, fault_record,
@@ -27,9 +27,9 @@ def at(window: int) -> int:
 
 def test_windows_and_counts_are_those_of_the_detector() -> None:
     recording = robot(20.0, 1, silent=((8.0, 12.0),))
-    training = Training(EncodingRules(), window=DEFAULT_WINDOW, paper=True)
-    training.add_events(recording.event_types, recording.stamps, recording.ids)
-    trained = training.model()
+    learner = Learner(paper=True)
+    learner.count(recording.event_types, recording.stamps, recording.ids)
+    trained = learner.model()
     verdicts = PaperModel(trained).judge(
         DEFAULT_WINDOW, None, DetectorParameters(), recording.stamps,
         recording.encoded(trained.event_types).ids, recording.end - 1)

@@ -9,7 +9,7 @@ from typing import Any, Callable, Dict, Iterator, List, Optional
 import pytest
 from conftest import jittery_robot, learned, write_bag
 
-from self_awareness import EncodingRules, EvidenceModel, TrainedModel, Training, read_events
+from self_awareness import EncodingRules, EvidenceModel, Learner, TrainedModel, read_events
 from self_awareness.commands import train
 from self_awareness.judging import BOTH, EVIDENCE
 from self_awareness.parts import BagPart
@@ -93,11 +93,11 @@ def described(trained: Trained) -> Dict[str, Any]:
 
 def at_once(bags: List[str]) -> TrainedModel:
     """Return what one training counts that takes all bags, without sums."""
-    whole = Training(EncodingRules.defaults())
+    whole = Learner(encoding=EncodingRules.defaults())
     for bag, recording in zip(bags, counted(bags).model.recordings):
         events = read_events(bag, EncodingRules.defaults())
-        whole.add_events(events.event_types, events.stamps, events.ids, recording,
-                         attributes=events.attributes)
+        whole.count(events.event_types, events.stamps, events.ids, recording.fingerprint,
+                    attributes=events.attributes, bag=recording.bag)
     return whole.model()
 
 

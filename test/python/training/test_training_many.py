@@ -11,8 +11,8 @@ import pytest
 import rosbag
 from conftest import jittery_robot, learned, robot, train_tuned, write_bag
 
-from self_awareness import (EncodingRules, EventType, EvidenceCounts, EvidenceModel, TrainedModel,
-                            Training, Tuning, read_events)
+from self_awareness import (EncodingRules, EventType, EvidenceModel, Learner,
+                            TrainedModel, Tuning, read_events)
 from self_awareness.commands import train
 from self_awareness.training.robot_graph import RobotGraph
 
@@ -49,22 +49,22 @@ def test_counts_and_limits_are_those_of_one_process(bags: List[str], tmp_path: P
 
 
 def test_bags_counted_apart_are_what_one_training_counts(bags: List[str], tmp_path: Path) -> None:
-    training = Training(EncodingRules.defaults())
+    learner = Learner(encoding=EncodingRules.defaults())
     for bag, recording in zip(bags, trained(bags, tmp_path / 'm').recordings):
         events = read_events(bag, EncodingRules.defaults())
-        training.add_events(events.event_types, events.stamps, events.ids, recording,
-                            attributes=events.attributes)
-    assert learned(TrainedModel.load(str(tmp_path / 'm'))) == learned(training.model())
+        learner.count(events.event_types, events.stamps, events.ids, recording.fingerprint,
+                      attributes=events.attributes, bag=recording.bag)
+    assert learned(TrainedModel.load(str(tmp_path / 'm'))) == learned(learner.model())
 
 
-def test_a_training_ends_with_its_model() -> None:
-    training = Training(EncodingRules())
+def test_a_learning_ends_with_its_model() -> None:
+    learner = Learner()
     events = [EventType('', '/a', '')], np.arange(3), np.zeros(3)
-    training.add_events(*events)
-    training.model()
-    calls: List[Callable[[], object]] = [training.model, lambda: training.add_events(*events)]
+    learner.count(*events)
+    learner.model()
+    calls: List[Callable[[], object]] = [learner.model, lambda: learner.count(*events)]
     for more in calls:
-        with pytest.raises(ValueError, match='is over'):
+        with pytest.raises(RuntimeError, match='is over'):
             more()
 
 
@@ -72,13 +72,14 @@ def test_a_training_ends_with_its_model() -> None:
 def test_a_single_bag_is_cut_in_two(bags: List[str], jobs: str, tmp_path: Path) -> None:
     events = read_events(bags[0], EncodingRules.defaults())
     model = trained(bags[:1], tmp_path / 'm', '--jobs', jobs)
-    training = Training(EncodingRules.defaults())
-    training.add_events(events.event_types, events.stamps, events.ids, model.recordings[0],
-                        attributes=events.attributes)
+    learner = Learner(encoding=EncodingRules.defaults())
+    learner.count(events.event_types, events.stamps, events.ids, model.recordings[0].fingerprint,
+                  attributes=events.attributes, bag=model.recordings[0].bag)
     for half in (0, 1):
-        counted = sum(EvidenceCounts(model, half).events(k) for k in range(len(model.event_types)))
+        counts = EvidenceModel.of_all_pairs(model, half)
+        counted = sum(counts.events(k) for k in range(len(model.event_types)))
         assert 0.4 < counted / len(events.stamps) < 0.6
-    assert learned(model) == learned(training.model())
+    assert learned(model) == learned(learner.model())
 
 
 @pytest.mark.parametrize('jobs', ['1', '3'])

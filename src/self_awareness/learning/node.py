@@ -1,4 +1,4 @@
-"""The steps of a learning: record until there is enough, train and calibrate, or record more."""
+"""The learning as a node: records until there is enough, then trains, or records more."""
 from __future__ import annotations
 
 import os
@@ -49,7 +49,7 @@ class Plan:
     subscribe: str
 
 
-class Learner:
+class LearningNode:
     """Learns, and serves `~finish` (std_srvs/Trigger); needs rospy.init_node().
 
     Args:
