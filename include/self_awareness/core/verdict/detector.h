@@ -76,9 +76,6 @@ class Detector : private WindowObserver {
   /// Takes note of how the machine was in a stretch of time, one after the other; at the latest
   /// before a window is judged that ends after its begin. Who measured it may have stood still.
   void hear(const Waiting& waiting);
-  /// Takes note of who may be absent. What is unusual of them while they are there is judged.
-  /// @param patterns names of components or topics, or their begins and a `*`
-  void setOptional(const std::vector<std::string>& patterns) { judge_->setOptional(patterns); }
   /// Takes what is accepted as normal from now on, in place of what was before. It is no unknown
   /// event any more, and no alarm of before the start waits for it.
   void accept(const Acceptances& accepted);
