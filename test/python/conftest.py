@@ -97,6 +97,15 @@ def wait_until(condition: Callable[[], object], what: str, deadline_s: float = 6
         time.sleep(0.005)
 
 
+def bytes_of(number: int) -> bytes:
+    """Return a number, 0 or more, as a model's bytes have it: seven bits a byte, a sign below."""
+    left, found = 2 * number, []
+    while left >= 128:
+        found.append(left % 128 + 128)
+        left //= 128
+    return bytes([*found, left])
+
+
 def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
     """Return all that a file says of a model but when it was made; of limits only if asked for."""
     model = copy.copy(model)
@@ -107,9 +116,10 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
     if limits is not None:
         limits.stamp = 0
         model.calibration = limits
+    stamp = bytes_of(model.stamp)
     state = model.__getstate__()
-    stamp = 4 * 32 + 4  # after the md5 of four messages and the length of the first
-    return state[:stamp] + state[stamp + 8:]
+    assert stamp in state
+    return state.replace(stamp, b'', 1)
 
 
 @pytest.fixture
