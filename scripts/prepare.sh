@@ -24,7 +24,7 @@ packages_debian=(
   python3-actionlib-msgs python3-diagnostic-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs
   python3-nodelet python3-std-srvs python3-visualization-msgs
   libvisualization-msgs-dev libsensor-msgs-dev libstd-srvs-dev
-  pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev zlib1g-dev pkg-config
+  pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev pkg-config
   python3-numpy python3-matplotlib python3-tqdm python3-yaml python3-jinja2 python3-plotly python3-urwid graphviz
   libgtest-dev libgmock-dev nlohmann-json3-dev procps
 )
@@ -44,7 +44,7 @@ packages_noetic=(
   ros-noetic-rosbag ros-noetic-rosbag-storage ros-noetic-roslz4 ros-noetic-std-srvs ros-noetic-rosbash
   ros-noetic-actionlib-msgs ros-noetic-visualization-msgs ros-noetic-sensor-msgs ros-noetic-nav-msgs
   ros-noetic-geometry-msgs
-  pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev zlib1g-dev pkg-config
+  pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev pkg-config
   python3-numpy python3-matplotlib python3-tqdm python3-yaml python3-jinja2 python3-plotly python3-urwid graphviz
   ros-noetic-rostest ros-noetic-roslaunch libgtest-dev libgmock-dev nlohmann-json3-dev procps
 )

@@ -62,14 +62,16 @@ bool AcceptCalls::covers(const core::Alarm& alarm, const core::Vocabulary& vocab
     return accepted_.covers(alarm.culprit, "", alarm.kind);
   }
   const core::Suspect& first = alarm.suspects.front();
+  const core::Kind kind = first.reason.kind;
+  const auto covers = [&](const std::string& topic) {
+    return accepted_.covers(first.component, topic, kind) ||
+           (core::isAbsence(kind) && accepted_.mayBeAbsent(first.component, topic));
+  };
   const std::vector<std::string>& topics = first.reason.topics;
   if (!topics.empty()) {
-    return std::all_of(topics.begin(), topics.end(), [&](const std::string& topic) {
-      return accepted_.covers(first.component, topic, first.reason.kind);
-    });
+    return std::all_of(topics.begin(), topics.end(), covers);
   }
-  return first.id < vocabulary.size() &&
-         accepted_.covers(first.component, vocabulary.at(first.id).scope, first.reason.kind);
+  return first.id < vocabulary.size() && covers(vocabulary.at(first.id).scope);
 }
 
 void AcceptCalls::tell(const std::vector<core::EventType>& types,

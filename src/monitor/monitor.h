@@ -54,9 +54,8 @@ namespace self_awareness {
 ///   which an alarm or a suspicion ends.
 /// - `~silence` (string; default: abnormal; abnormal or ignored): with `~detector` paper, what a
 ///   window without events is.
-/// - `~optional` (list; default: []): nodes or topics that may be absent: names, or their begins
-///   and a `*`. That they are silent, or never come, is no evidence; what is unusual of them while
-///   they are there still is. With `~detector` evidence.
+/// - `~optional` (list; default: []): nodes or topics whose absence is accepted (kind never came):
+///   names, or their begins and a `*`. What is unusual of them while they are there is judged.
 /// - `~subscribe` (string; default: used; used, all or model): topics to listen to besides those
 ///   of the model: what a node of the robot listens to, what is published, or none. To listen may
 ///   wake publishers that work only while somebody listens.
@@ -121,8 +120,8 @@ namespace self_awareness {
 /// What somebody mutes goes on ~status, ~alarm and ~incidents as ever, but is OK on /diagnostics,
 /// and no more than INFO in the log. The mute has an end, at which the log says what it muted
 /// (MuteCalls).
-/// - `~mute` (self_awareness/Mute): a component, a topic or a kind is not told for a time.
-/// - `~maintenance` (self_awareness/Maintenance): nothing is told for a time.
+/// - `~mute` (self_awareness/Mute): a component, a topic, a kind, or all is not told for a time.
+/// - `~maintenance` (self_awareness/Maintenance): the mute of all.
 ///
 /// What somebody accepts is normal from now on, and kept beside the model (AcceptCalls).
 /// - `~accept` (self_awareness/Accept): a new node or topic, or what stands against components, is

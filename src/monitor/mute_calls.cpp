@@ -67,8 +67,10 @@ core::Mute muteOf(const Mute::Request& request) {
     }
   }
   if (mute.mutesAll()) {
-    throw std::invalid_argument(
-        "name a component, a topic or a kind; ~maintenance mutes everything");
+    throw std::invalid_argument("name a component, a topic or a kind; a component '*' is all");
+  }
+  if (mute.component == "*" && mute.topic.empty() && !mute.kind) {
+    mute.component.clear();
   }
   mute.until_over = request.until_over != 0U;
   return mute;
@@ -161,32 +163,35 @@ std::string MuteCalls::ofComponent(const std::string& component) const {
 }
 
 bool MuteCalls::onMute(Call& call) {
-  if (!calls_.mayServe("mute", call, steadyNow())) {
-    return true;
-  }
-  Mute::Response& response = call.getResponse();
-  try {
-    core::Mute mute = muteOf(call.getRequest());
-    mute.by = ros1::printable(call.getCallerName(), ros1::kLongestName);
-    answer(mute, call.getRequest().duration, response);
-  } catch (const std::invalid_argument& error) {
-    response.success = 0U;
-    response.message = error.what();
+  if (calls_.mayServe("mute", call, steadyNow())) {
+    call.getResponse() = serve(call.getRequest(), call.getCallerName());
   }
   return true;
 }
 
 bool MuteCalls::onMaintenance(MaintenanceCall& call) {
   if (calls_.mayServe("maintenance", call, steadyNow())) {
-    core::Mute all;
-    all.by = ros1::printable(call.getCallerName(), ros1::kLongestName);
-    answer(all, call.getRequest().duration, call.getResponse());
+    Mute::Request all;
+    all.component = "*";
+    all.duration = call.getRequest().duration;
+    const Mute::Response said = serve(all, call.getCallerName());
+    call.getResponse().success = said.success;
+    call.getResponse().message = said.message;
   }
   return true;
 }
 
-template <typename Response>
-void MuteCalls::answer(const core::Mute& mute, double duration, Response& response) {
+Mute::Response MuteCalls::serve(const Mute::Request& request, const std::string& caller) {
+  Mute::Response response;
+  core::Mute mute;
+  try {
+    mute = muteOf(request);
+  } catch (const std::invalid_argument& error) {
+    response.message = error.what();
+    return response;
+  }
+  mute.by = ros1::printable(caller, ros1::kLongestName);
+  const double duration = request.duration;
   if (duration == 0) {
     const std::optional<core::Mute> ended = mutes_.end(mute);
     response.success = ended.has_value();
@@ -209,6 +214,7 @@ void MuteCalls::answer(const core::Mute& mute, double duration, Response& respon
   }
   ROS_INFO("%s", response.message.c_str());
   onChange();
+  return response;
 }
 
 }  // namespace self_awareness

@@ -19,7 +19,8 @@
 
 namespace self_awareness {
 
-/// The services ~mute and ~maintenance: what an operator does not want to be told for a while.
+/// The service ~mute: what an operator does not want to be told for a while. ~maintenance mutes
+/// all.
 ///
 /// Times are steady [ns]. Belongs to the thread that judges.
 class MuteCalls : public Part {
@@ -61,8 +62,8 @@ class MuteCalls : public Part {
   bool mutesAll() const;
   bool onMute(Call& call);
   bool onMaintenance(MaintenanceCall& call);
-  template <typename Response>
-  void answer(const core::Mute& mute, double duration, Response& response);
+  /// Does what a call asks for. @return the answer
+  Mute::Response serve(const Mute::Request& request, const std::string& caller);
 
   OperatorCalls& calls_;
   Host& host_;

@@ -4,9 +4,7 @@
 
 #include "diagnostics.h"
 #include "node/live_source.h"
-#include "parameters.h"
 #include "self_awareness/core/stream/event.h"
-#include "self_awareness/core/verdict/name_pattern.h"
 #include "self_awareness/ros/encoding.h"
 #include "session.h"
 
@@ -20,10 +18,10 @@ std::string notHeard(const std::string& why) {
 }  // namespace
 
 std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
-                                           const std::vector<std::string>& optional,
+                                           const core::Acceptances& accepted,
                                            const ros1::Encoder& encoder) {
   const auto may_be_absent = [&](const ros1::Unheard& each) {
-    return core::isOneOf(optional, encoder.sourceOf(each.node), encoder.scopeOf(each.topic));
+    return accepted.mayBeAbsent(encoder.sourceOf(each.node), encoder.scopeOf(each.topic));
   };
   unheard.erase(std::remove_if(unheard.begin(), unheard.end(), may_be_absent), unheard.end());
   return unheard;
@@ -42,9 +40,10 @@ void NotHeard::onVerdict(core::Verdict& verdict, ros1::Circumstances& /*circumst
 
 void NotHeard::onReport(MonitorState& state) {
   if (host_.session() != nullptr) {
-    const ros1::Encoder& encoder = *host_.session()->encoder();
+    const Session& session = *host_.session();
+    const ros1::Encoder& encoder = *session.encoder();
     state.unheard =
-        withoutOptional(host_.live().discovery().unheard(), host_.parameters().optional, encoder);
+        withoutOptional(host_.live().discovery().unheard(), session.accepted(), encoder);
     set(state.unheard, encoder);
     state.communication.not_heard = components();
   }

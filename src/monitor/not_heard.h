@@ -8,6 +8,7 @@
 #include "host.h"
 #include "part.h"
 #include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/live/subscriptions.h"
@@ -15,10 +16,10 @@
 namespace self_awareness {
 
 /// Those that are not expected to be heard all the time are left out.
-/// @param optional patterns of nodes or topics that may be absent
-/// @param encoder gives nodes and topics the names that the patterns are of
+/// @param accepted among it, whose absence
+/// @param encoder gives nodes and topics the names that are accepted
 std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
-                                           const std::vector<std::string>& optional,
+                                           const core::Acceptances& accepted,
                                            const ros1::Encoder& encoder);
 
 /// Keeps apart who is silent and who the monitor cannot hear: where the network between them is

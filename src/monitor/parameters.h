@@ -22,7 +22,7 @@ struct MonitorParameters {
   Method method = Method::kEvidence;    ///< ~detector
   core::Detector::Parameters detector;  ///< ~settle_time, ~alarm_windows, ~alarm_of,
                                         ///< ~hold_time, ~silence, ~unknown
-  std::vector<std::string> optional;    ///< ~optional: patterns of who may be absent
+  std::vector<std::string> optional;    ///< ~optional: patterns of whose absence is accepted
   LiveParameters live;
   bool source_diagnostics = true;               ///< ~source_diagnostics: one status per source
   std::size_t diagnostic_bytes = 2000;          ///< ~diagnostic_bytes: a second, on /diagnostics

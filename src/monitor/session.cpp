@@ -10,7 +10,6 @@
 #include "ros/verdict/verdict_message.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/stream/mode.h"
-#include "self_awareness/core/verdict/name_pattern.h"
 #include "self_awareness/ros/file_version.h"
 
 namespace self_awareness {
@@ -21,6 +20,23 @@ constexpr int kTicksPerWindow = 4;
 // A node of this package has logged and read its parameters before the master knows what it
 // publishes; so long that may take, besides the time until the master is asked [s].
 constexpr double kToBeKnown = 4;
+
+/// What ~optional accepts: that who has one of the names is absent.
+/// @throw std::invalid_argument if there are too many
+core::Acceptances absencesOf(const std::vector<std::string>& names) {
+  core::Acceptances absences;
+  for (const std::string& name : names) {
+    core::Acceptance of_component;
+    of_component.component = name;
+    of_component.kind = core::Kind::kNeverCame;
+    core::Acceptance of_topic = of_component;
+    std::swap(of_topic.component, of_topic.topic);
+    if (!absences.add(of_component) || !absences.add(of_topic)) {
+      throw std::invalid_argument("~optional has too many names; name several by a *");
+    }
+  }
+  return absences;
+}
 
 }  // namespace
 
@@ -47,6 +63,7 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
       calibrated_(parameters.method == MonitorParameters::Method::kPaper
                       ? trained_.paper_calibration.has_value()
                       : trained_.calibration.has_value()),
+      absences_(absencesOf(parameters.optional)),
       unheard_(trained_.unheard()),
       subscriptions_(trained_.expectedSubscriptions()),
       graph_(std::make_shared<core::SourceGraph>(trained_.graph)),
@@ -54,16 +71,9 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
       encoder_(std::make_shared<ros1::Encoder>(
           trained_.encoding, [this](const core::EventType& type) { return intern(type); })),
       detector_(makeJudge(parameters), trained_.window, parameters.detector, std::move(handler)) {
+  accept({});
   if (parameters.method == MonitorParameters::Method::kEvidence) {
-    accept({});
     expectRates();
-  }
-  detector_.setOptional(parameters.optional);
-  for (const core::EventType& type : types()) {
-    const std::string& component = core::componentOf(type.source, type.scope);
-    if (core::isOneOf(parameters.optional, component, type.scope)) {
-      optional_.insert(component);
-    }
   }
   // The judge has made of them what it needs.
   trained_.dropCounts();
@@ -87,14 +97,20 @@ std::unique_ptr<core::Judge> Session::makeJudge(const MonitorParameters& paramet
 }
 
 void Session::accept(const core::Acceptances& accepted) {
-  detector_.accept(accepted);
-  if (!model_ || !trained_.calibration) {
-    return;
-  }
+  accepted_ = accepted;
+  accepted_.add(absences_);
+  detector_.accept(accepted_);
+  optional_.clear();
   std::vector<bool> may_be_silent;
   for (const core::EventType& type : types()) {
-    may_be_silent.push_back(accepted.covers(core::componentOf(type.source, type.scope), type.scope,
-                                            core::Kind::kDied));
+    const std::string& component = core::componentOf(type.source, type.scope);
+    may_be_silent.push_back(accepted_.covers(component, type.scope, core::Kind::kDied));
+    if (accepted_.mayBeAbsent(component, type.scope)) {
+      optional_.insert(component);
+    }
+  }
+  if (!model_ || !trained_.calibration) {
+    return;
   }
   coverage_ = core::evidence::coverageOf(*model_, trained_.calibration->limits,
                                          trained_.calibration->relations, trained_.window,

@@ -75,8 +75,10 @@ class Session {
   const ros1::EncodingRules& encoding() const { return trained_.encoding; }
   const std::shared_ptr<const ros1::Encoder>& encoder() const { return encoder_; }
   core::Detector& detector() { return detector_; }
-  /// Takes what is accepted as normal from now on, in place of what was before.
+  /// Takes what is accepted as normal from now on, besides ~optional, in place of what was before.
   void accept(const core::Acceptances& accepted);
+  /// What is accepted, with ~optional.
+  const core::Acceptances& accepted() const { return accepted_; }
   /// Whose messages reach whom: in training, and as addEdges() was told.
   const core::SourceGraph& graph() const { return *graph_; }
 
@@ -130,6 +132,8 @@ class Session {
   std::vector<core::evidence::Coverage> coverage_;
   std::map<std::string, std::map<std::string, double>> expected_;
   std::vector<double> shares_;  // since they were taken, by component; empty: no window since
+  core::Acceptances absences_;  // that ~optional accepts
+  core::Acceptances accepted_;
   std::set<std::string> optional_;
   std::set<core::SourceGraph::Publication> unheard_;
   std::set<core::SourceGraph::Subscription> subscriptions_;  // that are expected

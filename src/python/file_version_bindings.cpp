@@ -34,7 +34,7 @@ void bindFileVersions(py::module& m) {
             version.format = format;
             version.oldest_reader = oldest_reader;
             version.package = package;
-            return ros1::whyTooNew(version, ros1::kGraphFile);
+            return ros1::whyUnread(version, ros1::kGraphFile);
           },
           py::arg("format"), py::arg("oldest_reader"), py::arg("package"),
           "Why such a file cannot be read; empty: it can.");

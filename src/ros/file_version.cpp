@@ -30,7 +30,12 @@ self_awareness::FileVersion firstVersionOf(const FileKind& kind) {
   return version;
 }
 
-std::string whyTooNew(const self_awareness::FileVersion& version, const FileKind& kind) {
+std::string whyUnread(const self_awareness::FileVersion& version, const FileKind& kind) {
+  if (version.format < kind.first) {
+    return "of format " + std::to_string(version.format) +
+           ", which was of no release and is not read any more (format " +
+           std::to_string(kind.first) + " is the first one); " + kind.again;
+  }
   if (version.oldest_reader <= kind.format) {
     return "";
   }

@@ -1,4 +1,4 @@
-"""Writes the recordings that the files in format_* are made of: make_bags.py FOLDER.
+"""Writes the recordings that the files of a release are made of: make_bags.py FOLDER.
 
 A robot of six nodes: a laser at 10 Hz; slam, which answers it within 25 to 40 ms; navigation,
 which answers each second pose; a battery at 2 Hz; a microphone that hears a word now and again;

@@ -8,7 +8,7 @@
 #include "ros/message_check.h"
 #include "ros/message_upgrade.h"
 #include "self_awareness/EventLogGraph.h"
-#include "self_awareness/Model.h"
+#include "self_awareness/EventLogStart.h"
 
 using namespace self_awareness;  // NOLINT
 
@@ -33,7 +33,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::uint8_t* const zero = std::find(data, end, 0);
   const std::uint8_t* const message = zero == end ? end : zero + 1;
   const std::string definition(data, zero);
-  upgrade<self_awareness::Model>(definition, message, static_cast<std::size_t>(end - message));
+  upgrade<self_awareness::EventLogStart>(definition, message,
+                                         static_cast<std::size_t>(end - message));
   upgrade<self_awareness::EventLogGraph>(definition, message,
                                          static_cast<std::size_t>(end - message));
   return 0;

@@ -147,13 +147,15 @@ void writeMessages(const std::string& folder) {
   }
 }
 
-/// A model and a graph, as this version and as others lay them out.
-void writeStored(const std::string& folder, const std::string& model) {
+/// The start of an event log and a graph, as this version and as others lay them out.
+void writeStored(const std::string& folder) {
   namespace traits = ros::message_traits;
-  const std::string bytes = '\0' + serialized(ros1::toMessage(ros1::loadModel(model)));
-  const std::string definition = traits::definition<self_awareness::Model>();
-  ros1::bag_bytes::writeFile(folder + "model", definition + bytes);
-  for (const char* name : {"uint32 predecessors", "uint8 channel", "string topic"}) {
+  const self_awareness::EventLogStart start =
+      ros1::startOfRecording(ros1::EncodingRules::defaults(), core::kNanosecondsPerSecond);
+  const std::string bytes = '\0' + serialized(start);
+  const std::string definition = traits::definition<self_awareness::EventLogStart>();
+  ros1::bag_bytes::writeFile(folder + "start", definition + bytes);
+  for (const char* name : {"uint64 fingerprint", "uint8 classes", "string pattern"}) {
     std::string other = definition;
     const std::size_t at = other.find(name);
     if (at != std::string::npos) {
@@ -198,6 +200,6 @@ int main(int argc, char** argv) {
   writeModel(models + "model");
   writeAllCompressions(models + "model", models + "model_");
   writeStandingAlarm(folderOf(argv[1], "standing_alarm"));
-  writeStored(folderOf(argv[1], "message_upgrade"), models + "model");
+  writeStored(folderOf(argv[1], "message_upgrade"));
   return 0;
 }

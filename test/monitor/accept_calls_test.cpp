@@ -121,6 +121,27 @@ TEST_F(AcceptCallsTest, WhatStandsIsTakenByItsIdWhileItStands) {
   EXPECT_EQ(changes_, 1);
 }
 
+TEST_F(AcceptCallsTest, ADeathIsCoveredByAnAbsenceThatIsAccepted) {
+  stands(core::Kind::kDied, {suspect(0, "/driver", core::Kind::kDied)});
+  call(asked("/driver", "", "never came"));
+  EXPECT_TRUE(calls_.covers(*alarm_, vocabulary_));
+  stands(core::Kind::kSlow, {suspect(0, "/driver", core::Kind::kSlow)});
+  EXPECT_FALSE(calls_.covers(*alarm_, vocabulary_)) << "it is there";
+}
+
+TEST_F(AcceptCallsTest, WhatNamesNobodyOrNoKindIsRefused) {
+  EXPECT_NE(call(asked("", "", "slow"), false).find("name a component or a topic"),
+            std::string::npos);
+  EXPECT_NE(call(asked("/a", "", "odd"), false).find("kind: odd is not a kind"),
+            std::string::npos);
+  Accept::Request request;
+  request.incident = 7;
+  EXPECT_NE(call(request, false).find("there is none of the id 7"), std::string::npos);
+  request.component = "/a";
+  EXPECT_NE(call(request, false).find("alone, without component"), std::string::npos);
+  EXPECT_EQ(changes_, 0);
+}
+
 TEST_F(AcceptCallsTest, ACallThatNamesNothingAcceptsNothingAndTellsWhatMayBeNamed) {
   EXPECT_EQ(call({}, false), "nothing stands, and nobody is new; name a component or a topic");
   stands(core::Kind::kDied, {suspect(0, "/driver", core::Kind::kDied)});

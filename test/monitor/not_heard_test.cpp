@@ -21,8 +21,17 @@ TEST(NotHeard, WhoMayBeAbsentIsNamedAsTheModelNamesHim) {
   unheard[1].topic = "/r7/gripper";
   unheard[2].node = "/r7/player";
   unheard[2].topic = "/r7/scan";
-  const std::vector<ros1::Unheard> left =
-      withoutOptional(unheard, {"/joy*", "/gripper", "/arm"}, encoder);
+  core::Acceptances accepted;
+  core::Acceptance one;
+  one.kind = core::Kind::kNeverCame;
+  for (const char* name : {"/joy*", "/arm"}) {
+    one.component = name;
+    accepted.add(one);
+  }
+  one.component.clear();
+  one.topic = "/gripper";
+  accepted.add(one);
+  const std::vector<ros1::Unheard> left = withoutOptional(unheard, accepted, encoder);
   ASSERT_EQ(left.size(), 1U);
   EXPECT_EQ(left[0].node, "/r7/player");
 }

@@ -94,6 +94,31 @@ core::EventId encode(ros1::ConnectionEncoder& connection, const std::string& dat
   return connection.id(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
+TEST(Session, WhoIsOptionalIsAcceptedAsAbsentBesidesWhatOperatorsAccept) {
+  MonitorParameters parameters = byPaper();
+  parameters.optional = {"/play*", "/pose"};
+  Session session(model(), parameters, [](const core::Verdict& /*verdict*/) {});
+  const std::set<std::string> optional = {"/player", "/slam", "/manager"};
+  EXPECT_EQ(session.optional(), optional);
+  core::Acceptances accepted;
+  core::Acceptance slow;
+  slow.component = "/slam";
+  slow.kind = core::Kind::kSlow;
+  accepted.add(slow);
+  session.accept(accepted);
+  EXPECT_EQ(session.optional(), optional);
+  EXPECT_TRUE(session.accepted().mayBeAbsent("/player", "/scan"));
+  EXPECT_TRUE(session.accepted().covers("/slam", "/pose", core::Kind::kSlow));
+  EXPECT_FALSE(session.accepted().covers("/player", "/scan", core::Kind::kSlow));
+  parameters.optional.assign(core::Acceptances::kMost, "/x");
+  EXPECT_NO_THROW(Session(model(), parameters, [](const core::Verdict& /*verdict*/) {}));
+  for (std::size_t k = 0; k < core::Acceptances::kMost; ++k) {
+    parameters.optional[k] += std::to_string(k);
+  }
+  EXPECT_THROW(Session(model(), parameters, [](const core::Verdict& /*verdict*/) {}),
+               std::invalid_argument);
+}
+
 TEST(Session, KnowsTheModelsTopicsAndWhatItsOwnProcessPublishes) {
   const Session session(model(), byPaper(), [](const core::Verdict&) {});
   const LiveSource::Wanted wanted = session.wanted("/manager", 1);

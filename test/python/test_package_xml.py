@@ -24,7 +24,6 @@ KEYS: Dict[str, str] = {
     'Eigen': 'eigen',
     'Eigen3': 'eigen',
     'GTest': 'gtest',
-    'ZLIB': 'zlib',
     'PkgConfig': 'pkg-config',
     'Python': 'python3-dev',
     'boost': 'libboost-filesystem-dev',
@@ -41,7 +40,6 @@ KEYS: Dict[str, str] = {
     'rospack': 'roslib',
     'rosrun': 'rosbash',
     'xmlrpcpp': 'roscpp',
-    'zlib.h': 'zlib',
 }
 
 # What programs and tests do without, and say so.

@@ -1,4 +1,4 @@
-"""Files of every version are read, and say for ever what they said (docs/files.md).
+"""Files of every release are read, and say for ever what they said (docs/files.md).
 
 The files are in test/data: README.md there says how they were made.
 """
@@ -16,24 +16,18 @@ import rosbag
 import yaml
 from conftest import robot
 
-from self_awareness import (METHOD, EncodingRules, EvidenceModel, FileVersion, ResultBag,
-                            TrainedModel)
+from self_awareness import METHOD, EncodingRules, FileVersion, ResultBag, TrainedModel
 from self_awareness.commands import calibrate, info, merge, score, train
 from self_awareness.msg import FileVersion as Message
 from self_awareness.training.robot_graph import RobotGraph
 
 DATA = Path(__file__).resolve().parents[1] / 'data'
-FORMATS = sorted(DATA.glob('format_*'))
+RELEASES = [DATA / '0.1.0']
 RECORDINGS = ('normal_6.events.bag', 'dead.events.bag', 'late.events.bag')
-FILES = ('robot.model', 'dead.events.bag', 'results.bag')
+FORMATS = {'robot.model': 6, 'dead.events.bag': 6, 'results.bag': 2}
+"""What is written now, by the file of its kind."""
 
-RESULT_FORMAT = 2
-"""Of result bags now: they did not change with the models."""
-
-GONE = {'answers'}
-"""Channels that this version does not judge any more."""
-
-every_format = pytest.mark.parametrize('folder', FORMATS, ids=[path.name for path in FORMATS])
+every_release = pytest.mark.parametrize('folder', RELEASES, ids=[path.name for path in RELEASES])
 
 Key = Tuple[str, str, str]
 
@@ -50,8 +44,7 @@ def by_track(limits: List[Dict[str, Any]]) -> Dict[Key, List[float]]:
     """Return the limits of each pair of event types on a channel, in order."""
     found: Dict[Key, List[float]] = defaultdict(list)
     for each in limits:
-        if each['channel'] not in GONE:
-            found[each['channel'], each['to'], each['from']].append(each['limit'])
+        found[each['channel'], each['to'], each['from']].append(each['limit'])
     return {key: sorted(values) for key, values in found.items()}
 
 
@@ -76,18 +69,17 @@ def with_version(path: Path, output: Path, **changes: Any) -> str:
     return str(output)
 
 
-def test_every_format_has_its_files(tmp_path: Path) -> None:
-    names = [path.name for path in FORMATS]
-    assert names == [f'format_{number}' for number in range(1, len(names) + 1)]
-    for folder in FORMATS:
+def test_what_is_written_now_has_its_files(tmp_path: Path) -> None:
+    for folder in RELEASES:
         size = sum(path.stat().st_size for path in folder.iterdir())
         assert size < 300_000, 'they are small'
-    TrainedModel.load(str(FORMATS[-1] / 'robot.model')).save(str(tmp_path / 'now'))
-    now = TrainedModel.load(str(tmp_path / 'now')).version
-    assert now.format == len(FORMATS), 'the newest files are those of what is written now'
+    newest = str(RELEASES[-1] / 'robot.model')
+    TrainedModel.load(newest).save(str(tmp_path / 'now'))
+    for model in (newest, str(tmp_path / 'now')):
+        assert TrainedModel.load(model).version.format == FORMATS['robot.model']
 
 
-@every_format
+@every_release
 def test_a_model_says_for_ever_what_it_said(folder: Path) -> None:
     found, expected = says(folder), json.loads((folder / 'expected.json').read_text())
     assert found['threshold'] == expected['threshold']
@@ -107,27 +99,7 @@ def test_a_model_says_for_ever_what_it_said(folder: Path) -> None:
             assert alarm['suspects'][0] == before['suspects'][0]
 
 
-def test_a_model_of_format_1_loses_the_tracks_that_nobody_judges_any_more(capsys) -> None:
-    path = FORMATS[0] / 'robot.model'
-    with rosbag.Bag(str(path)) as bag:
-        message = next(message for _, message, _ in bag.read_messages()
-                       if hasattr(message, 'tracks'))
-    names = {0: 'overdue', 1: 'fewer', 2: 'more', 3: 'pairs', 6: 'deadlines'}
-    calibration, = message.evidence_calibration
-    stay = [(('own gaps' if track.channel == 3 and track.to_id == track.from_id
-              else names[track.channel]), track.to_id, track.from_id, limit)
-            for track, limit in zip(message.tracks, calibration.limits)
-            if track.channel in names]
-    assert {track.channel for track in message.tracks} == {*names, 4, 5}, 'it has what went'
-    model = TrainedModel.load(str(path))
-    found = [(track.name, track.to_id, track.from_id, limit)
-             for track, limit in zip(EvidenceModel(model).tracks, model.calibration.limits)]
-    assert repr(found) == repr(stay)  # NaN is equal to nothing
-    assert len(model.calibration.relations) == len(found)
-    assert 'left out: answers, slow delays: this version' in printed(capsys, path)
-
-
-@every_format
+@every_release
 def test_expectations_hold_what_they_are_for(folder: Path) -> None:
     expected = json.loads((folder / 'expected.json').read_text())
     first = {name: [alarm['suspects'][0].split()[0] for alarm in said['evidence']]
@@ -137,31 +109,28 @@ def test_expectations_hold_what_they_are_for(folder: Path) -> None:
     assert {each['channel'] for each in expected['limits']} >= {'overdue', 'pairs'}
 
 
-@every_format
+@every_release
 def test_info_prints_the_versions(folder: Path, capsys) -> None:
-    number = int(folder.name.split('_')[1])
-    for name in FILES:
+    for name, number in FORMATS.items():
         version = json.loads(printed(capsys, folder / name, '--json'))['version']
-        expected = number if name != 'results.bag' else min(number, RESULT_FORMAT)
-        assert version['format'] == expected and version['oldest_reader'] <= expected
+        assert version['oldest_reader'] <= version['format'] <= number
         assert (version['method'] is None) == (name == 'dead.events.bag')
-        text = f'written by   self_awareness {version["package"]}, format {expected}'
+        text = f'written by   self_awareness {version["package"]}, format {version["format"]}'
         assert text in printed(capsys, folder / name)
-    assert (version['package'], version['method']) == ('0.1.0', 1) or number > 1
 
 
-@every_format
-def test_programs_go_on_with_files_of_any_format(folder: Path, tmp_path: Path, capsys) -> None:
+@every_release
+def test_programs_go_on_with_files_of_any_release(folder: Path, tmp_path: Path, capsys) -> None:
     model, results = str(tmp_path / 'm'), str(tmp_path / 'results.bag')
     normal, dead = (str(folder / name) for name in RECORDINGS[:2])
     assert calibrate.main(['--model', str(folder / 'robot.model'), '--normal', normal,
                            '-o', model]) == 0
     before, after = TrainedModel.load(str(folder / 'robot.model')), TrainedModel.load(model)
-    assert after.version.format == len(FORMATS), 'what is written is of this version'
+    assert after.version.format == FORMATS['robot.model'], 'what is written is of this version'
     assert after.version.method == before.version.method, 'but its counts are not'
     assert score.main([dead, '--model', model, '--result-bag', results]) == 0
     assert '1. /laser' in capsys.readouterr().out
-    assert FileVersion.of_result_bag(results).format == RESULT_FORMAT
+    assert FileVersion.of_result_bag(results).format == FORMATS['results.bag']
     assert train.main([normal, '--add-to', model, '-o', model]) == 0
     other = str(tmp_path / 'other')
     assert train.main([dead, '--detector', 'both', '-o', other]) == 0
@@ -169,18 +138,17 @@ def test_programs_go_on_with_files_of_any_format(folder: Path, tmp_path: Path, c
     assert TrainedModel.load(model).version.method == min(METHOD, before.version.method)
 
 
-@every_format
-def test_result_bags_of_any_format_are_known(folder: Path) -> None:
+@every_release
+def test_result_bags_of_any_release_are_known(folder: Path) -> None:
     results = str(folder / 'results.bag')
     assert ResultBag.is_one(results)
-    number = int(folder.name.split('_')[1])
-    assert FileVersion.of_result_bag(results).format == min(number, RESULT_FORMAT)
+    assert FileVersion.of_result_bag(results).format <= FORMATS['results.bag']
     with rosbag.Bag(results) as bag:
         assert any(bag.read_messages('/self_awareness/alarm', raw=True))
 
 
-@every_format
-def test_graphs_of_any_format_are_read(folder: Path, tmp_path: Path) -> None:
+@every_release
+def test_graphs_of_any_release_are_read(folder: Path, tmp_path: Path) -> None:
     graph = RobotGraph.load(str(folder / 'dead.graph.yaml'))
     assert ('/laser', '/scan', '/slam') in graph.edges(EncodingRules())
     graph.save(str(tmp_path / 'g.yaml'))
@@ -204,9 +172,9 @@ def test_a_graph_of_a_newer_format_is_read_if_it_says_so(tmp_path: Path) -> None
             RobotGraph.load(str(path))
 
 
-@pytest.mark.parametrize('name', FILES[:2])
+@pytest.mark.parametrize('name', list(FORMATS)[:2])
 def test_a_file_that_is_too_new_is_one_line(name: str, tmp_path: Path, capsys) -> None:
-    newest = FORMATS[-1]
+    newest = RELEASES[-1]
     path = with_version(newest / name, tmp_path / name, format=9, oldest_reader=8,
                         package='3.2.1')
     model = path if name == 'robot.model' else str(newest / 'robot.model')
@@ -218,9 +186,28 @@ def test_a_file_that_is_too_new_is_one_line(name: str, tmp_path: Path, capsys) -
         assert 'update self_awareness' in error and error.count('\n') == 1
 
 
-@pytest.mark.parametrize('name', FILES)
+def test_an_event_log_of_before_versions_is_read(capsys) -> None:
+    path = DATA / 'former.events.bag'
+    assert 'format 1' in printed(capsys, path)
+    summary = json.loads(printed(capsys, path, '--json'))
+    counts = {each['source']: each['count'] for each in summary['event_types']}
+    assert (summary['events'], counts['/laser']) == (958, 200)  # it died after 20 s, of 10 Hz
+
+
+def test_a_model_of_no_release_is_one_line(tmp_path: Path, capsys) -> None:
+    newest = RELEASES[-1]
+    path = with_version(newest / 'robot.model', tmp_path / 'm', format=5, oldest_reader=5)
+    for program in (lambda: info.main([path]),
+                    lambda: score.main([str(newest / 'dead.events.bag'), '--model', path])):
+        assert program() == 1
+        error = capsys.readouterr().err
+        assert f'{path}: of format 5, which was of no release' in error
+        assert 'train it again' in error and error.count('\n') == 1
+
+
+@pytest.mark.parametrize('name', FORMATS)
 def test_a_newer_file_is_read_if_it_says_so(name: str, tmp_path: Path, capsys) -> None:
-    newest = FORMATS[-1]
+    newest = RELEASES[-1]
     path = with_version(newest / name, tmp_path / name, format=9, package='3.2.1', method=7)
     out = printed(capsys, Path(path))
     assert f'self_awareness 3.2.1, format 9, method 7 (this is {METHOD})' in out

@@ -1,19 +1,18 @@
 #!/usr/bin/python3
-"""What an operator accepts is normal from now on, for other starts and for training, too."""
+"""What an operator accepts is normal from now on, for other starts, too."""
 
 import os
 import subprocess
-from typing import Any, Dict, Tuple
+from typing import Any
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-import self_awareness
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          operation, write_bag)
 from monitor_case import MonitorCase
-from self_awareness.msg import Acceptance, SelfAwareness
+from self_awareness.msg import SelfAwareness
 from self_awareness.srv import Accept, AcceptResponse
 
 NODE = '/self_awareness'
@@ -142,53 +141,6 @@ class AcceptTest(TrainedCase):
             await_condition('it is an alarm again', lambda: (
                 listener.alarms[-1].level == SelfAwareness.ERROR), 20)
             self.assertFalse(accept(component='/driver', undo=True).success, 'it is not accepted')
-
-    def test_training_learns_what_is_accepted(self) -> None:
-        ended = max(each.end for each in
-                    self_awareness.TrainedModel.load(self.path('model')).recordings)
-        entries = [self_awareness.Acceptance('/driver', '/scan', 'slow', ended - 1, '/rqt'),
-                   self_awareness.Acceptance('/base', '', '', ended + 1, '/rqt'),
-                   self_awareness.Acceptance('/joystick', '/joy', 'stranger', 1, '/rqt'),
-                   self_awareness.Acceptance('/dri*', '', '', 1, '/rqt')]
-        self_awareness.write_accepted(entries, self.path('model.accepted'))
-        said = self.train()
-        self.assertIn('learned now, so it is judged again: /driver on /scan (slow)', said)
-        self.assertIn('accepted, and not learned: /base\n', said)
-        self.assertEqual(self_awareness.read_accepted(self.path('model.accepted')), entries[1:])
-
-    @again_if_disturbed
-    def test_messages_that_are_accepted_do_not_hide_a_death(self) -> None:
-        with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
-            with talker('driver', '/scan', 12.5):
-                self.await_heard(listener, '/driver', '/base')
-                said = accept(component='/driver', kind='other size', more=[
-                    Acceptance(component='/driver', kind='slow'),
-                    Acceptance(component='driver')])
-                self.assertFalse(said.success)
-                self.assertIn('2 of 3: normal from now on: /driver (other size), /driver (slow)',
-                              said.message)
-                await_condition('it is told', lambda: (
-                    'other size' in (listener.value('/driver', 'accepted') or '')), 20)
-                float(listener.value('/driver', 'death found after [s]'))
-            alarm = listener.await_alarm()
-            self.assertEqual((alarm.component, alarm.kind), ('/driver', 'died'))
-
-    @again_if_disturbed
-    def test_what_cannot_be_accepted_is_refused(self) -> None:
-        with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
-            self.await_heard(listener, '/base')
-            refused: Tuple[Tuple[Dict[str, Any], str], ...] = (
-                ({'kind': 'slow'}, 'name a component or a topic'),
-                ({'component': '/a', 'kind': 'odd'}, 'kind: odd is not a kind'),
-                ({'incident': 7}, 'there is none of the id 7'),
-                ({'component': '/a', 'incident': 7}, 'alone, without component'),
-                ({'component': '/a', 'undo': True}, '/a is not accepted'))
-            for what, why in refused:
-                said = accept(**what)
-                self.assertFalse(said.success)
-                self.assertIn(why, said.message)
-            self.assertIn('too many calls', accept(component='/a').message)
-            self.assertFalse(os.path.exists(self.path('model.accepted')))
 
 
 if __name__ == '__main__':

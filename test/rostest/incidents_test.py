@@ -216,11 +216,11 @@ class IncidentsTest(MonitorCase):
                 await_condition('it is over', lambda: (
                     'mute ended, since all is normal again: /scan; ' in monitor.output), 80)
                 self.await_heard(listener)
-                maintenance = rospy.ServiceProxy(NODE + '/maintenance', Maintenance)
-                self.assertTrue(maintenance(duration=600.0).success)
+                self.assertTrue(self.mute(component='*', duration=600.0).success)
                 victim.send(signal.SIGKILL)
                 listener.await_alarm()
                 self.await_level(listener, DiagnosticStatus.OK, 'muted (maintenance until')
+                maintenance = rospy.ServiceProxy(NODE + '/maintenance', Maintenance)
                 said = maintenance(duration=0.0)
                 self.assertTrue(said.success, said.message)
                 self.await_level(listener, DiagnosticStatus.ERROR, 'abnormal communication')

@@ -70,7 +70,6 @@ class Judge : public core::Judge {
     new_mode_.accept(accepted);
   }
   bool isAccepted(EventId id, Kind kind) const override { return excused_.isExcused(id, kind); }
-  void setOptional(const std::vector<std::string>& names) override { excused_.setOptional(names); }
   void setMissing(const std::set<SourceGraph::Subscription>& missing) override {
     unsubscribed_.set(missing);
   }

@@ -50,8 +50,9 @@ Acceptance::Extent Acceptance::extent() const {
       return Extent::kNothing;
     case Kind::kNewMode:
       return Extent::kMode;
-    case Kind::kDied:
     case Kind::kNeverCame:
+      return Extent::kAbsence;
+    case Kind::kDied:
       break;
   }
   return Extent::kAll;
@@ -74,6 +75,10 @@ bool Acceptances::add(const Acceptance& acceptance) {
   return true;
 }
 
+void Acceptances::add(const Acceptances& others) {
+  list_.insert(list_.end(), others.list_.begin(), others.list_.end());
+}
+
 std::vector<Acceptance> Acceptances::remove(const Acceptance& pattern) {
   const auto removed = std::stable_partition(
       list_.begin(), list_.end(), [&](const Acceptance& each) { return !fits(each, pattern); });
@@ -88,6 +93,12 @@ bool Acceptances::covers(const std::string& component, const std::string& topic,
   return std::any_of(list_.begin(), list_.end(), [&](const Acceptance& each) {
     return each.isAbout(component, topic) &&
            (each.extent() == Acceptance::Extent::kAll || each.extent() == asked.extent());
+  });
+}
+
+bool Acceptances::mayBeAbsent(const std::string& component, const std::string& topic) const {
+  return std::any_of(list_.begin(), list_.end(), [&](const Acceptance& each) {
+    return each.extent() == Acceptance::Extent::kAbsence && each.isAbout(component, topic);
   });
 }
 

@@ -45,7 +45,11 @@ void EventLogPacker::flush(std::int64_t now) {
   part.heard_until = toRosTime(std::max(now, events_.empty() ? now : events_.back().stamp));
   part.dropped = dropped_;
   part.events = packed.events;
+  part.first = toRosTime(packed.first);
+  part.delay_bits = packed.delay_bits;
+  part.id_bits = packed.id_bits;
   part.packed = std::move(packed.bytes);
+  part.attributes = std::move(packed.attributes);
   for (const core::Waiting& waiting : waiting_) {
     part.waiting_from.push_back(waiting.from);
     part.waiting_to.push_back(waiting.to);

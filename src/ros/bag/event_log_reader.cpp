@@ -303,6 +303,13 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
       types.push_back(named(type, encoder));
     }
     known.resize(types.size());
+    PackedEvents packed;
+    packed.first = nanoseconds(part.first);
+    packed.events = part.events;
+    packed.delay_bits = part.delay_bits;
+    packed.id_bits = part.id_bits;
+    packed.bytes = std::move(part.packed);
+    packed.attributes = std::move(part.attributes);
     if (part.events > EventLogPacker::kMostEvents) {
       messages.fail("a part of too many events");
     }
@@ -315,7 +322,7 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
     }
     std::vector<core::Event> events;
     try {
-      events = PackedEvents{part.events, std::move(part.packed)}.unpack();
+      events = packed.unpack();
     } catch (const std::invalid_argument& error) {
       messages.fail(error.what());
     }

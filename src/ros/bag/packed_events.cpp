@@ -1,122 +1,221 @@
 #include "packed_events.h"
 
-#include <zlib.h>
-
-#include <array>
+#include <algorithm>
 #include <limits>
-#include <new>
 #include <stdexcept>
 #include <unordered_map>
-#include <utility>
 
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kDelayBytes = 8;
-constexpr std::size_t kIdBytes = 4;
-constexpr unsigned kSame = core::Attributes::kSteps;  // added to a step: the content is the same
+// A delay with more ones than this is stored whole, in kWholeBits.
+constexpr std::uint64_t kMostOnes = 40;
+constexpr int kWholeBits = 63;
+constexpr int kMostDelayBits = 62;
+constexpr int kMostIdBits = 32;
+constexpr std::uint64_t kMostDelay = std::numeric_limits<std::int64_t>::max();  // [ns]
 
-/// What is known of a message: age, size, and what its number and its content say.
-using Attributes = std::array<std::uint8_t, 3>;
-/// An event: the delay since the one before and its id, the lowest byte first, and what differs
-/// from the attributes of the one before of its type.
-using Row = std::array<std::uint8_t, kDelayBytes + kIdBytes + Attributes().size()>;
+class BitWriter {
+ public:
+  explicit BitWriter(std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
-Attributes bytesOf(const core::Attributes& attributes) {
-  return {attributes.age, attributes.size,
-          static_cast<std::uint8_t>(static_cast<unsigned>(attributes.step) |
-                                    (attributes.same ? kSame : 0U))};
+  /// Writes the low bits of a value, the highest of them first.
+  void write(std::uint64_t value, int bits) {
+    for (int bit = bits - 1; bit >= 0; --bit) {
+      if (free_ == 0) {
+        bytes_.push_back(0);
+        free_ = 8;
+      }
+      --free_;
+      bytes_.back() |= static_cast<std::uint8_t>((value >> bit & 1) << free_);
+    }
+  }
+
+ private:
+  std::vector<std::uint8_t>& bytes_;
+  int free_ = 0;  // bits of the last byte
+};
+
+class BitReader {
+ public:
+  explicit BitReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
+
+  /// @param bits at most 63
+  std::uint64_t read(std::size_t bits) {
+    if (bits > 8 * bytes_.size() - position_) {
+      throw std::invalid_argument("packed events are cut off");
+    }
+    std::uint64_t value = 0;
+    while (bits > 0) {  // what is left of a byte at once
+      const std::size_t left = 8 - position_ % 8;
+      const std::size_t taken = std::min(left, bits);
+      const unsigned byte = bytes_[position_ / 8];
+      value = value << taken | (byte >> (left - taken) & ((1U << taken) - 1));
+      position_ += taken;
+      bits -= taken;
+    }
+    return value;
+  }
+  /// Bytes that were begun.
+  std::size_t bytes() const { return (position_ + 7) / 8; }
+
+ private:
+  const std::vector<std::uint8_t>& bytes_;
+  std::size_t position_ = 0;  // [bits]
+};
+
+std::uint64_t bitsOf(std::uint64_t delay, int delay_bits) {
+  const std::uint64_t ones = delay >> delay_bits;
+  return ones < kMostOnes ? ones + 1 + static_cast<std::uint64_t>(delay_bits)
+                          : kMostOnes + kWholeBits;
 }
 
-core::Attributes attributesOf(const Attributes& bytes) {
-  if (bytes[2] >= 2 * kSame) {
-    throw std::invalid_argument("attributes of packed events that cannot be");
+constexpr int kClassBits = 8;  // of an age, and of a size
+constexpr int kStepBits = 3;
+
+/// The attributes of the last event of each type: what is new of the next one is stored.
+using LastAttributes = std::unordered_map<core::EventId, core::Attributes>;
+
+std::vector<std::uint8_t> packAttributes(const std::vector<core::Event>& events) {
+  std::vector<std::uint8_t> bytes;
+  if (std::none_of(events.begin(), events.end(),
+                   [](const core::Event& event) { return event.attributes.isKnown(); })) {
+    return bytes;
   }
-  return {bytes[0], bytes[1], static_cast<core::Attributes::Step>(bytes[2] % kSame),
-          bytes[2] >= kSame};
+  BitWriter writer(bytes);
+  LastAttributes last;
+  for (const core::Event& event : events) {
+    const core::Attributes& now = event.attributes;
+    core::Attributes& before = last[event.id];
+    const bool as_last =
+        now.size == before.size && now.step == before.step && now.same == before.same;
+    writer.write(as_last ? 1 : 0, 1);
+    if (!as_last) {
+      writer.write(now.size, kClassBits);
+      writer.write(static_cast<std::uint64_t>(now.step), kStepBits);
+      writer.write(now.same ? 1 : 0, 1);
+    }
+    writer.write(now.age == before.age ? 1 : 0, 1);
+    if (now.age != before.age) {
+      writer.write(now.age, kClassBits);
+    }
+    before = now;
+  }
+  return bytes;
 }
 
-void put(std::uint64_t number, std::size_t begin, std::size_t bytes, Row& row) {
-  for (std::size_t k = 0; k < bytes; ++k, number >>= 8U) {
-    row[begin + k] = static_cast<std::uint8_t>(number);
+void unpackAttributes(const std::vector<std::uint8_t>& bytes, std::vector<core::Event>& events) {
+  if (bytes.empty()) {
+    return;
+  }
+  BitReader reader(bytes);
+  LastAttributes last;
+  for (core::Event& event : events) {
+    core::Attributes& attributes = last[event.id];
+    if (reader.read(1) == 0) {
+      attributes.size = static_cast<std::uint8_t>(reader.read(kClassBits));
+      attributes.step = static_cast<core::Attributes::Step>(reader.read(kStepBits));
+      attributes.same = reader.read(1) == 1;
+    }
+    if (reader.read(1) == 0) {
+      attributes.age = static_cast<std::uint8_t>(reader.read(kClassBits));
+    }
+    event.attributes = attributes;
+  }
+  if (reader.bytes() != bytes.size()) {
+    throw std::invalid_argument("packed attributes are followed by other bytes");
   }
 }
 
-std::uint64_t numberIn(const Row& row, std::size_t begin, std::size_t bytes) {
-  std::uint64_t number = 0;
-  for (std::size_t k = bytes; k > 0; --k) {
-    number = number << 8U | row[begin + k - 1];
+int shortestDelayBits(const std::vector<std::uint64_t>& delays) {
+  int shortest = 0;
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (int bits = 0; bits <= kMostDelayBits; ++bits) {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t delay : delays) {
+      sum += bitsOf(delay, bits);
+    }
+    if (sum < least) {
+      least = sum;
+      shortest = bits;
+    }
   }
-  return number;
+  return shortest;
 }
 
 }  // namespace
 
-// The columns are packed, one behind the other: most of the upper ones hardly change.
 PackedEvents PackedEvents::pack(const std::vector<core::Event>& events) {
   if (events.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw std::invalid_argument("too many events to pack together");
   }
-  std::vector<std::uint8_t> columns(events.size() * Row().size());
-  std::unordered_map<core::EventId, Attributes> of_type;
-  std::int64_t last = 0;
-  for (std::size_t k = 0; k < events.size(); ++k) {
-    const core::Event& event = events[k];
+  PackedEvents packed;
+  packed.events = static_cast<std::uint32_t>(events.size());
+  if (events.empty()) {
+    return packed;
+  }
+  packed.first = events.front().stamp;
+  std::vector<std::uint64_t> delays;
+  std::int64_t last = packed.first;
+  std::uint64_t largest_id = 0;
+  for (const core::Event& event : events) {
     if (event.stamp < last) {
       throw std::invalid_argument("the time of events to be packed goes back");
     }
-    Row row;
-    put(static_cast<std::uint64_t>(event.stamp - std::exchange(last, event.stamp)), 0, kDelayBytes,
-        row);
-    put(event.id, kDelayBytes, kIdBytes, row);
-    const Attributes now = bytesOf(event.attributes);
-    const Attributes before = std::exchange(of_type[event.id], now);
-    for (std::size_t part = 0; part < now.size(); ++part) {
-      row[kDelayBytes + kIdBytes + part] = now[part] ^ before[part];
-    }
-    for (std::size_t column = 0; column < row.size(); ++column) {
-      columns[column * events.size() + k] = row[column];
-    }
+    delays.push_back(static_cast<std::uint64_t>(event.stamp - last));
+    last = event.stamp;
+    largest_id = std::max<std::uint64_t>(largest_id, event.id);
   }
-  PackedEvents packed;
-  packed.events = static_cast<std::uint32_t>(events.size());
-  uLongf size = compressBound(columns.size());
-  packed.bytes.resize(size);
-  if (compress(packed.bytes.data(), &size, columns.data(), columns.size()) != Z_OK) {
-    throw std::bad_alloc();  // nothing else can go wrong
+  const int delay_bits = shortestDelayBits(delays);
+  int id_bits = 0;
+  while (largest_id >> id_bits > 0) {
+    ++id_bits;
   }
-  packed.bytes.resize(size);
+  packed.delay_bits = static_cast<std::uint8_t>(delay_bits);
+  packed.id_bits = static_cast<std::uint8_t>(id_bits);
+  BitWriter writer(packed.bytes);
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    const std::uint64_t ones = delays[k] >> delay_bits;
+    if (ones < kMostOnes) {
+      writer.write((std::uint64_t{1} << (ones + 1)) - 2, static_cast<int>(ones) + 1);
+      writer.write(delays[k], delay_bits);
+    } else {
+      writer.write((std::uint64_t{1} << kMostOnes) - 1, kMostOnes);
+      writer.write(delays[k], kWholeBits);
+    }
+    writer.write(events[k].id, id_bits);
+  }
+  packed.attributes = packAttributes(events);
   return packed;
 }
 
 std::vector<core::Event> PackedEvents::unpack() const {
-  std::vector<std::uint8_t> columns(events * Row().size() + 1);  // zlib needs a byte for none
-  uLongf size = columns.size();
-  uLong used = bytes.size();
-  if (uncompress2(columns.data(), &size, bytes.data(), &used) != Z_OK || used != bytes.size() ||
-      size != columns.size() - 1) {
-    throw std::invalid_argument("packed events are damaged");
+  if (delay_bits > kMostDelayBits || id_bits > kMostIdBits) {
+    throw std::invalid_argument("packed events have a wrong number of bits");
   }
-  std::vector<core::Event> unpacked(events);
-  std::unordered_map<core::EventId, Attributes> of_type;
-  std::uint64_t stamp = 0;
-  for (std::size_t k = 0; k < unpacked.size(); ++k) {
-    Row row;
-    for (std::size_t column = 0; column < row.size(); ++column) {
-      row[column] = columns[column * unpacked.size() + k];
+  std::vector<core::Event> unpacked;
+  // Each has one bit at least: damaged numbers do not ask for much memory.
+  unpacked.reserve(std::min<std::size_t>(events, 8 * bytes.size()));
+  BitReader reader(bytes);
+  std::int64_t stamp = first;
+  for (std::uint32_t k = 0; k < events; ++k) {
+    std::uint64_t ones = 0;
+    while (ones < kMostOnes && reader.read(1) == 1) {
+      ++ones;
     }
-    const std::uint64_t delay = numberIn(row, 0, kDelayBytes);
-    if (delay > std::numeric_limits<std::int64_t>::max() - stamp) {
+    const bool runs_over = ones < kMostOnes && ones > kMostDelay >> delay_bits;
+    const std::uint64_t delay =
+        ones < kMostOnes ? ones << delay_bits | reader.read(delay_bits) : reader.read(kWholeBits);
+    if (runs_over || stamp < 0 || delay > kMostDelay - static_cast<std::uint64_t>(stamp)) {
       throw std::invalid_argument("the time of packed events runs over");
     }
-    stamp += delay;
-    const auto id = static_cast<core::EventId>(numberIn(row, kDelayBytes, kIdBytes));
-    Attributes& attributes = of_type[id];
-    for (std::size_t part = 0; part < attributes.size(); ++part) {
-      attributes[part] ^= row[kDelayBytes + kIdBytes + part];
-    }
-    unpacked[k] = {static_cast<std::int64_t>(stamp), id, attributesOf(attributes)};
+    stamp += static_cast<std::int64_t>(delay);
+    unpacked.push_back({stamp, static_cast<core::EventId>(reader.read(id_bits))});
   }
+  if (reader.bytes() != bytes.size()) {
+    throw std::invalid_argument("packed events are followed by other bytes");
+  }
+  unpackAttributes(attributes, unpacked);
   return unpacked;
 }
 

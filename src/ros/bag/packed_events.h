@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -7,16 +8,22 @@
 
 namespace self_awareness::ros1 {
 
-/// Events in few bytes, without loss (docs/event_log.md): by columns, packed by zlib. Most of what
-/// is left are the last digits of times, which follow no rule.
+/// Events in few bytes, without loss (docs/event_log.md). Most of an event's bits are the last
+/// digits of its time, which follow no rule: so each delay is stored as it is in `delay_bits`
+/// bits, and what is above these as that many ones and a zero (Rice's code, the shortest for
+/// delays that are exponential).
 struct PackedEvents {
-  std::uint32_t events = 0;  ///< number
+  std::int64_t first = 0;       ///< stamp of the first event [ns]
+  std::uint32_t events = 0;     ///< number
+  std::uint8_t delay_bits = 0;  ///< 0 to 62
+  std::uint8_t id_bits = 0;     ///< 0 to 32
   std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> attributes;  ///< of the messages; empty: nothing is known of any
 
   /// Packs events whose stamps do not go back.
   /// @throw std::invalid_argument if one does, or there are more than 2^32 - 1 events
   static PackedEvents pack(const std::vector<core::Event>& events);
-  /// The events again. Takes memory by their number, whatever the bytes are.
+  /// The events again.
   /// @throw std::invalid_argument if the bytes are not what pack() makes
   std::vector<core::Event> unpack() const;
 };

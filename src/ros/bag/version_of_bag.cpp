@@ -63,7 +63,7 @@ std::optional<self_awareness::FileVersion> versionOfBag(const std::string& path,
 self_awareness::FileVersion checkedVersion(const std::string& path, const BagIndex& index,
                                            const FileKind& kind) {
   self_awareness::FileVersion version = versionOfKind(path, index, kind);
-  const std::string problem = whyTooNew(version, kind);
+  const std::string problem = whyUnread(version, kind);
   if (!problem.empty()) {
     throw BagError(path + ": " + problem);
   }

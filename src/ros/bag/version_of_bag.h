@@ -19,8 +19,8 @@ std::optional<self_awareness::FileVersion> versionOfBag(const std::string& path,
                                                         const BagIndex& index);
 
 /// The version of a file of a kind; the first one if it says nothing.
-/// @throw BagError if it cannot be read, is that of another kind, or of a newer version that this
-/// one does not understand
+/// @throw BagError if it cannot be read, is that of another kind, or of a version that this one
+/// does not read
 self_awareness::FileVersion checkedVersion(const std::string& path, const BagIndex& index,
                                            const FileKind& kind);
 

@@ -15,19 +15,12 @@
 #include "../bag/bag_index.h"
 #include "../bag/stored_messages.h"
 #include "../bag/version_of_bag.h"
-#include "../text.h"
-#include "check.h"
-#include "model_upgrade.h"
-#include "packed_pairs.h"
+#include "../check.h"
+#include "model_parts.h"
 #include "self_awareness/ContentDigest.h"
+#include "self_awareness/ModelPart.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/bag_writer.h"
-#include "self_awareness/ros/encoding_message.h"
-#include "self_awareness/ros/graph.h"
-#include "self_awareness/ros/model/calibration_message.h"
-#include "self_awareness/ros/model/delays_message.h"
-#include "self_awareness/ros/model/evidence_message.h"
-#include "self_awareness/ros/model/tuning_message.h"
 #include "self_awareness/ros/output_file.h"
 #include "self_awareness/ros/ros_time.h"
 
@@ -39,51 +32,9 @@ constexpr char kDelaysTopic[] = "/delays";
 constexpr char kDigestTopic[] = "/digest";
 constexpr std::array<const char*, 2> kEvidenceTopics{"/evidence/first", "/evidence/second"};
 
-constexpr std::uint32_t kFirstPacked = 3;  // format with PackedPairs; before, EvidencePairs
-
 // Of a file that may be made to fill the memory: many times what the largest model needs.
 constexpr std::uint64_t kLargestChunk = 1 << 28;  // [bytes]
-constexpr std::size_t kMostTracks = 200000;
-
-constexpr char kOtherDelays[] = "its histograms do not fit its event types";
-constexpr char kOtherEvidence[] = "its evidence does not fit its event types";
-
-self_awareness::GraphEdge graphMessage(const core::SourceGraph::Edge& edge) {
-  self_awareness::GraphEdge message;
-  message.publisher = edge.publisher;
-  message.topic = edge.topic;
-  message.subscriber = edge.subscriber;
-  return message;
-}
-
-core::paper::DelayStatistics eventTypesOf(const self_awareness::Model& message) {
-  core::paper::DelayStatistics statistics(
-      core::paper::Binning{message.bin_size, message.horizon_bins});
-  for (const self_awareness::EventType& type : message.event_types) {
-    const std::size_t before = statistics.vocabulary().size();
-    const core::EventId id = statistics.intern({type.source, type.scope, type.type});
-    check(id == before, "an event type occurs twice");
-    statistics.countEvent(id, type.count);
-  }
-  check(statistics.events() > 0, "it was trained on no event");
-  return statistics;
-}
-
-void checkEffort(const self_awareness::Model& message) {
-  check(message.window.toNSec() >= core::kShortestWindow &&
-            message.window.toNSec() <= core::kLongestWindow,
-        "the length of its windows cannot be");
-  check(message.event_types.size() <= kMostEventTypes, "it has too many event types");
-  check(message.tracks.size() <= kMostTracks, "it watches too much");
-  check(message.graph.size() <= kMostEdges, "it has too many edges");
-  std::size_t unheard = 0;
-  for (const self_awareness::TopicNodes& topic : message.unheard) {
-    unheard += topic.publishers.size();
-  }
-  check(unheard <= kMostEdges, "it has too many topics that nobody subscribed to");
-  check(message.subscriptions.size() <= kMostEdges, "it has too many subscriptions");
-  check(message.hosts.size() <= kMostHosts, "it has too many computers of sources");
-}
+constexpr char kOtherCounts[] = "its counts do not fit its event types";
 
 /// The messages of a model file.
 class ModelMessages {
@@ -100,6 +51,9 @@ class ModelMessages {
 
   /// @throw BagError as checkedVersion()
   self_awareness::FileVersion version() {
+    if (!tellVersion(index_.connections) && !hasModel()) {
+      failWithoutModel();
+    }
     self_awareness::FileVersion version = checkedVersion(path_, index_, kModelFile);
     forEach<self_awareness::FileVersion>(kVersionTopic, [](const auto& /*checked*/) {});
     return version;
@@ -125,9 +79,21 @@ class ModelMessages {
     return number;
   }
 
-  const std::string& path() const { return path_; }
+  [[noreturn]] void failWithoutModel() const {
+    throw ModelFileError(path_ +
+                         ": a bag, but it holds no model; train one from it "
+                         "(rosrun self_awareness train)");
+  }
 
  private:
+  /// Of any format.
+  bool hasModel() const {
+    return std::any_of(index_.connections.begin(), index_.connections.end(),
+                       [](const Connection& connection) {
+                         return connection.topic == kTopic &&
+                                connection.datatype.rfind("self_awareness/Model", 0) == 0;
+                       });
+  }
   void readDigests() {
     std::map<std::string, std::uint64_t> found;
     forEach<self_awareness::ContentDigest>(
@@ -145,53 +111,56 @@ class ModelMessages {
   std::string path_;
   BagIndex index_;
   std::unique_ptr<StoredMessages> messages_;
-  std::map<std::string, std::uint64_t> digests_;  // by topic; none: the file is of before
+  std::map<std::string, std::uint64_t> digests_;  // by topic; none: the file has none
 };
+
+/// Reads the parts on a topic, one after the other.
+/// @param format that they are of
+/// @param visit (reader, number of the part)
+/// @return their number
+template <typename Visit>
+std::size_t readParts(ModelMessages& messages, const std::string& topic, std::uint32_t format,
+                      Visit visit) {
+  std::size_t number = 0;
+  messages.forEach<self_awareness::ModelPart>(topic, [&](const self_awareness::ModelPart& part) {
+    ByteReader bytes(part.bytes.data(), part.bytes.size(), format);
+    visit(bytes, number++);
+    check(bytes.done() || format > kModelFile.format, "there is more in it than belongs to it");
+  });
+  return number;
+}
 
 TrainedModel read(ModelMessages& messages, ModelCounts counts) {
   const self_awareness::FileVersion version = messages.version();
   std::optional<TrainedModel> model;
-  const std::size_t models =
-      messages.forEach<self_awareness::Model>(kTopic, [&](self_awareness::Model message) {
-        checkEffort(message);
-        if (const std::string twice = resolveNames(message); !twice.empty()) {
-          throw ModelFileError(messages.path() + ": it knows the topic " + printable(twice) +
-                               " twice, with and without a slash too many or too few, as earlier "
-                               "versions took them from bags; train it again");
-        }
-        std::set<std::string> left_out = upgrade(message, version.format);
-        model = fromMessage(message);
-        model->version = version;
-        model->left_out = std::move(left_out);
-      });
-  check(models <= 1, "it holds more than one model");
-  if (!model) {
-    throw ModelFileError(messages.path() +
-                         ": a bag, but it holds no model; train one from it "
-                         "(rosrun self_awareness train)");
+  const auto readOne = [&](ByteReader& bytes, std::size_t /*number*/) {
+    check(!model, "it holds more than one model");
+    model = readModel(bytes);
+  };
+  if (readParts(messages, kTopic, version.format, readOne) == 0) {
+    messages.failWithoutModel();
   }
+  model->version = version;
+  const std::size_t types = model->vocabulary().size();
   if (counts != ModelCounts::kWatched || !model->isWatched()) {
-    const std::size_t number = messages.forEach<self_awareness::DelayHistograms>(
-        kDelaysTopic,
-        [&, next = core::EventId{0}](const self_awareness::DelayHistograms& message) mutable {
-          check(message.to_id == next++, kOtherDelays);
-          addMessage(message, model->statistics);
+    const std::size_t number =
+        readParts(messages, kDelaysTopic, version.format, [&](ByteReader& bytes, std::size_t to) {
+          check(to < types, kOtherCounts);
+          readDelays(bytes, static_cast<core::EventId>(to), model->statistics);
         });
-    check(number == model->vocabulary().size() || (number == 0 && model->isWatched()),
-          kOtherDelays);
+    check(number == types || (number == 0 && model->isWatched()), kOtherCounts);
   }
   const std::size_t halves = counts == ModelCounts::kAll && model->isWatched() ? 2 : 0;
   for (std::size_t half = 0; half < halves; ++half) {
-    model->evidence.at(half) = model->watched.halves.at(half).withoutPairs();
-    const auto set = [&, next = core::EventId{0}](const auto& message) mutable {
-      check(message.id == next++, kOtherEvidence);
-      setPairs(message, model->evidence.at(half));
-    };
-    const std::string topic = kEvidenceTopics.at(half);
-    const std::size_t number = version.format < kFirstPacked
-                                   ? messages.forEach<self_awareness::EvidencePairs>(topic, set)
-                                   : messages.forEach<self_awareness::PackedPairs>(topic, set);
-    check(number == model->vocabulary().size(), kOtherEvidence);
+    core::evidence::Statistics& statistics = model->evidence.at(half);
+    statistics = model->watched.halves.at(half).withoutPairs();
+    const std::size_t number =
+        readParts(messages, kEvidenceTopics.at(half), version.format,
+                  [&](ByteReader& bytes, std::size_t id) {
+                    check(id < types, kOtherCounts);
+                    readPairs(bytes, static_cast<core::EventId>(id), statistics);
+                  });
+    check(number == types, kOtherCounts);
   }
   return std::move(*model);
 }
@@ -208,7 +177,17 @@ class ModelWriter {
     bag_.write({topic}, stamp_, message);
     digests_[topic].add(bag_.written().data(), bag_.written().size());
   }
-  const std::vector<std::uint8_t>& written() const { return bag_.written(); }
+  /// Writes a part of a model.
+  /// @return its bytes
+  template <typename Write>
+  std::vector<std::uint8_t> writePart(const std::string& topic, Write writeTo) {
+    ByteWriter bytes;
+    writeTo(bytes);
+    self_awareness::ModelPart part;
+    part.bytes = bytes.take();
+    write(topic, part);
+    return std::move(part.bytes);
+  }
   /// Writes the digest of all before it.
   void writeDigests() {
     self_awareness::ContentDigest message;
@@ -229,129 +208,25 @@ void write(const TrainedModel& model, ModelWriter& file) {
   self_awareness::FileVersion version = versionOf(kModelFile);
   version.method = model.version.method;
   file.write(kVersionTopic, version);
-  file.write(kTopic, toMessage(model));
+  const std::vector<std::uint8_t> written =
+      file.writePart(kTopic, [&](ByteWriter& bytes) { writeModel(model, bytes); });
   // A file that nobody could read would be found out when it is needed.
-  fromMessage(readMessage<self_awareness::Model>(file.written().data(), file.written().size()));
+  ByteReader bytes(written.data(), written.size(), version.format);
+  readModel(bytes);
   for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
     if (model.hasDelays()) {
-      file.write(kDelaysTopic, toMessage(model.statistics, id));
+      file.writePart(kDelaysTopic,
+                     [&](ByteWriter& part) { writeDelays(model.statistics, id, part); });
     }
     for (std::size_t half = 0; model.hasEvidence() && half < model.evidence.size(); ++half) {
-      file.write(kEvidenceTopics.at(half), packedPairs(model.evidence.at(half), id));
+      file.writePart(kEvidenceTopics.at(half),
+                     [&](ByteWriter& part) { writePairs(model.evidence[half], id, part); });
     }
   }
   file.writeDigests();
 }
 
 }  // namespace
-
-self_awareness::Model toMessage(const TrainedModel& model) {
-  self_awareness::Model message;
-  message.stamp = toRosTime(model.stamp);
-  message.encoding = toMessage(model.encoding);
-  message.window.fromNSec(model.window);
-  message.bin_size = model.statistics.binning().bin_size;
-  message.horizon_bins = model.statistics.binning().horizon_bins;
-  for (core::EventId id = 0; id < model.statistics.vocabulary().size(); ++id) {
-    const core::EventType& type = model.statistics.vocabulary().at(id);
-    self_awareness::EventType event_type;
-    event_type.source = type.source;
-    event_type.scope = type.scope;
-    event_type.type = type.type;
-    event_type.count = model.statistics.eventCount(id);
-    message.event_types.push_back(event_type);
-  }
-  message.tuning = toMessage(model.tuning);
-  for (const core::evidence::Track& track : model.watched.tracks) {
-    message.tracks.push_back(toMessage(track));
-  }
-  if (model.isWatched()) {
-    for (const core::evidence::Statistics& half : model.watched.halves) {
-      message.watched.push_back(toMessage(half));
-    }
-  }
-  for (const core::SourceGraph::Edge& edge : model.graph.edges()) {
-    message.graph.push_back(graphMessage(edge));
-  }
-  for (const auto& [source, host] : model.graph.hosts()) {
-    self_awareness::NodeHost& placed = message.hosts.emplace_back();
-    placed.node = source;
-    placed.host = host;
-  }
-  for (const auto& [subscription, recordings] : model.graph.lasting()) {
-    self_awareness::Subscription& lasting = message.subscriptions.emplace_back();
-    lasting.node = subscription.first;
-    lasting.topic = subscription.second;
-    lasting.recordings = static_cast<std::uint32_t>(recordings);
-  }
-  for (const auto& [source, topic] : model.graph.unheard()) {
-    self_awareness::TopicNodes& unheard = message.unheard.emplace_back();
-    unheard.topic = topic;
-    unheard.publishers = {source};
-  }
-  message.recordings = toMessages(model.recordings);
-  for (const core::evidence::LimitFinder::Recording& recording : model.findings) {
-    message.findings.push_back(toMessage(recording));
-  }
-  if (model.paper_calibration) {
-    message.calibration.push_back(toMessage(*model.paper_calibration));
-  }
-  if (model.calibration) {
-    message.evidence_calibration.push_back(toMessage(*model.calibration));
-  }
-  return message;
-}
-
-TrainedModel fromMessage(const self_awareness::Model& message) {
-  checkEffort(message);
-  TrainedModel model;
-  model.stamp = fromRosTime(message.stamp);
-  model.encoding = fromMessage(message.encoding);
-  model.window = message.window.toNSec();
-  model.statistics = eventTypesOf(message);
-  model.tuning = tuningOf(message);
-  model.watched.tuning = model.tuning;
-  for (const self_awareness::Track& track : message.tracks) {
-    model.watched.tracks.push_back(fromMessage(track));
-  }
-  check(message.watched.size() == model.watched.halves.size() ||
-            (message.watched.empty() && message.tracks.empty()),
-        "its evidence has not two halves");
-  std::transform(
-      message.watched.begin(), message.watched.end(), model.watched.halves.begin(),
-      [&](const self_awareness::Evidence& half) { return fromMessage(half, model.vocabulary()); });
-  core::evidence::checkTracks(model.watched.tracks, model.vocabulary().size());
-  for (const self_awareness::GraphEdge& edge : message.graph) {
-    model.graph.connect(edge.publisher, edge.topic, edge.subscriber);
-  }
-  check(model.graph.edges().size() == message.graph.size(), "its graph has an edge twice");
-  for (const self_awareness::NodeHost& placed : message.hosts) {
-    model.graph.place(placed.node, placed.host);
-  }
-  for (const self_awareness::Subscription& lasting : message.subscriptions) {
-    model.graph.addLasting({lasting.node, lasting.topic}, lasting.recordings);
-  }
-  for (const self_awareness::TopicNodes& unheard : message.unheard) {
-    for (const std::string& source : unheard.publishers) {
-      model.graph.addUnheard({source, unheard.topic});
-    }
-  }
-  model.recordings = fromMessages(message.recordings);
-  for (const self_awareness::RecordingFindings& findings : message.findings) {
-    model.findings.push_back(
-        fromMessage(findings, model.watched.tracks.size(), model.vocabulary().size()));
-  }
-  check(message.calibration.size() <= 1, "it has more than one calibration");
-  if (!message.calibration.empty()) {
-    model.paper_calibration = fromMessage(message.calibration.front());
-  }
-  check(message.evidence_calibration.size() <= 1, "it has more than one calibration");
-  if (!message.evidence_calibration.empty()) {
-    model.calibration = fromMessage(message.evidence_calibration.front(),
-                                    model.watched.tracks.size(), model.vocabulary().size());
-  }
-  return model;
-}
 
 void saveModel(const TrainedModel& model, const std::string& path) {
   if (model.isWatched() != model.hasEvidence() || !(model.hasEvidence() || model.hasDelays())) {

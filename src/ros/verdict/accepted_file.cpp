@@ -15,23 +15,20 @@ constexpr OneMessageFile kFile{kAcceptedFile, "/accepted", "what is accepted in 
                                4 << 20};
 
 void checkContent(const self_awareness::Acceptances& accepted) {
-  requireOfFile(accepted.accepted.size() <= core::Acceptances::kMost, "there are too many");
+  check(accepted.accepted.size() <= core::Acceptances::kMost, "there are too many");
   for (const self_awareness::Acceptance& each : accepted.accepted) {
     const bool is_mode = core::kindOf(each.kind) == core::Kind::kNewMode;
-    requireOfFile(
-        is_mode ? !each.together.empty() : !each.component.empty() || !each.topic.empty(),
-        "one names nobody");
-    requireOfFile(is_mode ? each.component.empty() && each.topic.empty() : each.together.empty(),
-                  "one is of a component and of a mode");
-    requireOfFile(
-        std::max({each.component.size(), each.topic.size(), each.by.size()}) <= kLongestName &&
-            std::all_of(each.together.begin(), each.together.end(),
-                        [](const std::string& name) { return name.size() <= kLongestName; }),
-        "a name is too long");
-    requireOfFile(std::is_sorted(each.together.begin(), each.together.end()),
-                  "the components of a mode are in no order");
-    requireOfFile(each.kind.empty() || core::kindOf(each.kind).has_value(),
-                  "the kind of one is none");
+    check(is_mode ? !each.together.empty() : !each.component.empty() || !each.topic.empty(),
+          "one names nobody");
+    check(is_mode ? each.component.empty() && each.topic.empty() : each.together.empty(),
+          "one is of a component and of a mode");
+    check(std::max({each.component.size(), each.topic.size(), each.by.size()}) <= kLongestName &&
+              std::all_of(each.together.begin(), each.together.end(),
+                          [](const std::string& name) { return name.size() <= kLongestName; }),
+          "a name is too long");
+    check(std::is_sorted(each.together.begin(), each.together.end()),
+          "the components of a mode are in no order");
+    check(each.kind.empty() || core::kindOf(each.kind).has_value(), "the kind of one is none");
   }
 }
 

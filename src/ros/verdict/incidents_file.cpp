@@ -23,19 +23,19 @@ bool isId(std::uint64_t id) {
 }
 
 void checkNames(const std::vector<std::string>& names) {
-  requireOfFile(names.size() <= core::Incident::kMostNamed, "it has too many components");
-  requireOfFile(std::all_of(names.begin(), names.end(),
-                            [](const std::string& name) { return name.size() <= kLongestName; }),
-                "the name of a component is too long");
+  check(names.size() <= core::Incident::kMostNamed, "it has too many components");
+  check(std::all_of(names.begin(), names.end(),
+                    [](const std::string& name) { return name.size() <= kLongestName; }),
+        "the name of a component is too long");
 }
 
 void checkContent(const self_awareness::Incidents& incidents) {
-  requireOfFile(incidents.incidents.size() <= kMostIncidents, "there are too many");
+  check(incidents.incidents.size() <= kMostIncidents, "there are too many");
   for (const self_awareness::Incident& each : incidents.incidents) {
-    requireOfFile(each.level == SelfAwareness::WARN || each.level == SelfAwareness::ERROR,
-                  "the level of one is none");
-    requireOfFile(isId(each.id) && isId(each.last), "the id of one is none");
-    requireOfFile(core::kindOf(each.kind).has_value(), "the kind of one is none");
+    check(each.level == SelfAwareness::WARN || each.level == SelfAwareness::ERROR,
+          "the level of one is none");
+    check(isId(each.id) && isId(each.last), "the id of one is none");
+    check(core::kindOf(each.kind).has_value(), "the kind of one is none");
     checkNames({each.component});
     checkNames(each.together);
     checkNames(each.victims);

@@ -14,6 +14,7 @@
 #include "../bag/bag_index.h"
 #include "../bag/stored_messages.h"
 #include "../bag/version_of_bag.h"
+#include "../check.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/bag_writer.h"
 #include "self_awareness/ros/file_version.h"
@@ -29,14 +30,6 @@ struct OneMessageFile {
   std::uint64_t most_bytes;  ///< a larger one is not read
 };
 
-/// What is wrong with the content of a file.
-/// @throw std::invalid_argument with the problem, unless it is `true_of_it`
-inline void requireOfFile(bool true_of_it, const char* problem) {
-  if (!true_of_it) {
-    throw std::invalid_argument(problem);
-  }
-}
-
 /// Writes the whole file or nothing (see OutputFile).
 /// @throw FileError or BagError if it cannot be written
 template <typename Message>
@@ -51,12 +44,12 @@ void writeOneMessage(const OneMessageFile& of, const Message& message, const ros
   file.complete();
 }
 
-/// @param check throws std::invalid_argument if the content cannot be
+/// @param checkContent throws std::invalid_argument if the content cannot be
 /// @return none: there is no file
 /// @throw BagError if it is damaged, or no such file; names it
 template <typename Message, typename Check>
 std::optional<Message> readOneMessage(const OneMessageFile& of, const std::string& path,
-                                      const Check& check) {
+                                      const Check& checkContent) {
   const auto damaged = [&](const std::string& why) {
     return BagError(path + ": " + of.damaged + why);
   };
@@ -66,22 +59,22 @@ std::optional<Message> readOneMessage(const OneMessageFile& of, const std::strin
   }
   try {
     // To open a pipe would wait for its writer.
-    requireOfFile(boost::filesystem::is_regular_file(path, error) &&
-                      boost::filesystem::file_size(path, error) <= of.most_bytes,
-                  "it is no such file");
+    check(boost::filesystem::is_regular_file(path, error) &&
+              boost::filesystem::file_size(path, error) <= of.most_bytes,
+          "it is no such file");
     const std::optional<BagIndex> index = readIndexOfFormat2(path);
-    requireOfFile(index.has_value(), "it is no bag");
+    check(index.has_value(), "it is no bag");
     checkedVersion(path, *index, of.kind);
     StoredMessages messages(path, *index, of.most_bytes);
     std::optional<Message> found;
     for (const BagIndexEntry& entry : index->entries) {
       if (holds<Message>(index->connections[entry.connection])) {
-        requireOfFile(!found, "it holds several of them");
+        check(!found, "it holds several of them");
         found = messages.read<Message>(entry);
       }
     }
-    requireOfFile(found.has_value(), "it holds none");
-    check(*found);
+    check(found.has_value(), "it holds none");
+    checkContent(*found);
     return found;
   } catch (const rosbag::BagException& problem) {
     throw damaged(std::string(" (") + problem.what() + ")");

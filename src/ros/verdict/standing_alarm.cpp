@@ -15,15 +15,15 @@ constexpr OneMessageFile kFile{kStandingAlarmFile, "/standing_alarm", "the alarm
 void checkContent(const self_awareness::StandingAlarm& standing) {
   using self_awareness::SelfAwareness;
   const SelfAwareness& alarm = standing.alarm;
-  requireOfFile(alarm.level <= SelfAwareness::ERROR, "its level is none");
-  requireOfFile(alarm.suspects.size() <= core::kMostSuspects, "it has too many suspects");
+  check(alarm.level <= SelfAwareness::ERROR, "its level is none");
+  check(alarm.suspects.size() <= core::kMostSuspects, "it has too many suspects");
   for (const self_awareness::Suspect& suspect : alarm.suspects) {
-    requireOfFile(core::kindOf(suspect.kind).has_value(), "the kind of a suspect is none");
+    check(core::kindOf(suspect.kind).has_value(), "the kind of a suspect is none");
   }
   if (alarm.level == SelfAwareness::ERROR) {
-    requireOfFile(alarm.alarm > 0 && alarm.alarm < std::numeric_limits<std::int64_t>::max(),
-                  "its id is none");
-    requireOfFile(core::kindOf(alarm.kind).has_value(), "its kind is none");
+    check(alarm.alarm > 0 && alarm.alarm < std::numeric_limits<std::int64_t>::max(),
+          "its id is none");
+    check(core::kindOf(alarm.kind).has_value(), "its kind is none");
   }
 }
 

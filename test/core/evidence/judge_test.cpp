@@ -306,7 +306,9 @@ TEST_F(EvidenceJudgeTest, WhoIsOptionalMayBeAbsentAndIsJudgedWhileThere) {
   limits_.tracks[track(kOverdue, kB, kB)] = model_->overdue(kB, kSecond);
   limits_.tracks[track(kFewer, kB, kB)] = 2.5;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
-  judge->setOptional({"/b"});
+  Acceptances optional;
+  optional.add(accepted("/b", "", Kind::kNeverCame));
+  judge->accept(optional);
   const auto play = [&](int from, int to, int every) {  // B answers every so many times
     double worst = 0;
     for (int i = from; i < to; ++i) {

@@ -110,6 +110,21 @@ TEST(Acceptances, WhoMayBeSilentMayDoAnything) {
   }
 }
 
+TEST(Acceptances, WhoMayBeAbsentIsJudgedWhileThere) {
+  Acceptances accepted_now;
+  accepted_now.add(accepted("/joy*", "", Kind::kNeverCame));
+  EXPECT_TRUE(accepted_now.mayBeAbsent("/joystick", "/joy"));
+  EXPECT_FALSE(accepted_now.mayBeAbsent("/camera", "/image"));
+  for (const Kind kind : {Kind::kDied, Kind::kSlow, Kind::kStranger}) {
+    EXPECT_FALSE(accepted_now.covers("/joystick", "/joy", kind)) << toString(kind);
+  }
+  Acceptances all;
+  all.add(accepted("/joystick", ""));
+  EXPECT_FALSE(all.mayBeAbsent("/joystick", "/joy")) << "it is not judged at all";
+  all.add(accepted_now);
+  EXPECT_TRUE(all.mayBeAbsent("/joystick", "/joy"));
+}
+
 TEST(Acceptances, EachIsThereOnceAndTakenBack) {
   Acceptances accepted_now;
   EXPECT_TRUE(accepted_now.add(accepted("/camera", "")));

@@ -72,8 +72,8 @@ std::vector<Event> withAttributes(double scatter, double size_scatter, bool head
   return events;
 }
 
-double bytesOfEach(const std::vector<Event>& events) {
-  return static_cast<double>(PackedEvents::pack(events).bytes.size()) /
+double bytesOfAttributes(const std::vector<Event>& events) {
+  return static_cast<double>(PackedEvents::pack(events).attributes.size()) /
          static_cast<double>(events.size());
 }
 
@@ -85,10 +85,19 @@ TEST(PackedEvents, KeepAttributes) {
 }
 
 TEST(PackedEvents, AttributesNeedTwoBytesAtMost) {
-  const double of_time = bytesOfEach(withAttributes(0, 0, false));  // exact timers: nearly none
-  EXPECT_LT(of_time, 0.1);
-  EXPECT_LT(bytesOfEach(withAttributes(0.2, 0, true)), 1.3);
-  EXPECT_LT(bytesOfEach(withAttributes(3, 0.01, true)), 2);
+  EXPECT_EQ(bytesOfAttributes({{1, 0}, {2, 0}}), 0) << "nothing is known";
+  EXPECT_LT(bytesOfAttributes(withAttributes(0, 0, false)), 0.3);
+  EXPECT_LT(bytesOfAttributes(withAttributes(0.2, 0, true)), 1.3);
+  EXPECT_LT(bytesOfAttributes(withAttributes(3, 0.01, true)), 2);
+}
+
+TEST(PackedEvents, RefuseDamagedAttributes) {
+  const PackedEvents packed = PackedEvents::pack(withAttributes(0.2, 0.2, true));
+  for (const bool longer : {true, false}) {
+    PackedEvents damaged = packed;
+    damaged.attributes.resize(packed.attributes.size() + (longer ? 1 : -1));
+    EXPECT_THROW(damaged.unpack(), std::invalid_argument);
+  }
 }
 
 TEST(PackedEvents, NeedLittleMoreThanTheBitsThatFollowNoRule) {
@@ -100,8 +109,10 @@ TEST(PackedEvents, NeedLittleMoreThanTheBitsThatFollowNoRule) {
     stamp += static_cast<std::int64_t>(delay(random));
     events.push_back({stamp, static_cast<core::EventId>(random() % 24)});
   }
-  // log2(e 1 s / 163 Hz) = 23.99 bits, and 4.6 bits of the id: 3.57 bytes.
-  EXPECT_LT(bytesOfEach(events), 4);
+  // log2(e 1 s / 163 Hz) = 23.99 bits, and 5 bits of the id.
+  const double bits = 8.0 * static_cast<double>(PackedEvents::pack(events).bytes.size());
+  EXPECT_GT(bits / 20000, 28.9);
+  EXPECT_LT(bits / 20000, 29.2);
 }
 
 TEST(PackedEvents, TimeDoesNotGoBack) {
@@ -117,16 +128,29 @@ TEST(PackedEvents, DamageEndsInAnErrorOrInOtherEvents) {
   bad.bytes.push_back(0);
   EXPECT_THROW(bad.unpack(), std::invalid_argument) << "too long";
   bad = good;
-  ++bad.events;
+  bad.events = 4000000000;
+  EXPECT_THROW(bad.unpack(), std::invalid_argument) << "asks for much memory";
+  bad = good;
+  bad.delay_bits = 63;
   EXPECT_THROW(bad.unpack(), std::invalid_argument);
-  bad.events -= 2;
+  bad = good;
+  bad.id_bits = 33;
   EXPECT_THROW(bad.unpack(), std::invalid_argument);
+  bad = good;
+  bad.first = std::numeric_limits<std::int64_t>::max() - 10;
+  EXPECT_THROW(bad.unpack(), std::invalid_argument) << "runs over";
 
   std::mt19937_64 random(3);
   for (int k = 0; k < 20000; ++k) {  // no crash, no endless loop
-    PackedEvents any = good;
+    PackedEvents any;
+    any.first = static_cast<std::int64_t>(random());
     any.events = static_cast<std::uint32_t>(random() % 50);
-    any.bytes[random() % any.bytes.size()] = static_cast<std::uint8_t>(random());
+    any.delay_bits = static_cast<std::uint8_t>(random() % 70);
+    any.id_bits = static_cast<std::uint8_t>(random() % 40);
+    any.bytes.resize(random() % 40);
+    for (std::uint8_t& byte : any.bytes) {
+      byte = static_cast<std::uint8_t>(random() % 3 == 0 ? 255 : random());
+    }
     try {
       EXPECT_EQ(any.unpack().size(), any.events);
     } catch (const std::invalid_argument&) {

@@ -4,20 +4,22 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include <algorithm>
 #include <boost/filesystem.hpp>
-#include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "../bag/bag_bytes.h"
 #include "model_file_case.h"
-#include "self_awareness/PackedPairs.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-using Message = self_awareness::Model;
+constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 
 class BadModelsTest : public ModelFileTest {
  protected:
@@ -70,154 +72,112 @@ TEST_F(BadModelsTest, AFlippedBitOrALyingLengthAsksForNoMemory) {
   }
 }
 
-TEST_F(BadModelsTest, AModelOfAnotherLayoutIsNoMoreBelieved) {
-  std::string whole = plainModel();
-  const std::string md5 = ros::message_traits::md5sum<Message>();
-  for (std::size_t at = whole.find(md5); at != std::string::npos; at = whole.find(md5, at + 1)) {
-    whole.replace(at, md5.size(), std::string(md5.size(), '0'));
-  }
-  ASSERT_EQ(errorOf(whole), "");
-  std::mt19937 random(2);
-  for (int round = 0; round < 1000; ++round) {
-    const std::size_t at = random() % (whole.size() - sizeof(std::uint32_t));
-    std::string bytes = whole;
-    if (round % 2 == 0) {
-      bytes[at] = static_cast<char>(bytes[at] ^ 1 << random() % 8);
-    } else {
-      bytes.replace(at, sizeof(std::uint32_t), bag_bytes::bytesOf(0x3FFFFFFFU));
-    }
-    errorOf(bytes);
-  }
-}
-
 TEST_F(BadModelsTest, NumbersThatCannotBeAreRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();
-  const auto limits =
-      [this](const std::function<void(self_awareness::EvidenceCalibration&)>& set) {
-        return damagedModel([&](Message& m) { set(m.evidence_calibration.at(0)); });
-      };
-  EXPECT_EQ(limits([](auto& /*c*/) {}), "");
+  const auto error = [this](const std::function<void(core::Calibration&)>& set) {
+    return damagedModel([&](TrainedModel& m) { set(*m.calibration); });
+  };
   for (const double limit : {-1.0, 0.0, 5e-324, 1e300, kInf, -kInf}) {
-    EXPECT_NE(limits([&](auto& c) { c.limits.at(1) = limit; }), "") << limit;
+    EXPECT_NE(error([&](auto& c) { c.limits.tracks.at(1) = limit; }), "") << limit;
   }
-  EXPECT_NE(limits([&](auto& c) { c.limits.assign(c.limits.size(), kNan); }), "")
+  EXPECT_NE(error([&](auto& c) { c.limits.tracks.assign(c.limits.tracks.size(), kNan); }), "")
       << "nothing would ever be abnormal";
-  EXPECT_NE(limits([](auto& c) { c.firsts = {1}; }), "");
-  EXPECT_NE(limits([](auto& c) { c.firsts = {-2, 0}; }), "");
-  EXPECT_NE(limits([](auto& c) { c.relations.pop_back(); }), "");
-  EXPECT_NE(limits([](auto& c) { c.budget = -1; }), "");
+  EXPECT_NE(error([](auto& c) { c.limits.firsts = {1}; }), "");
+  EXPECT_NE(error([](auto& c) { c.limits.firsts = {-2, 0}; }), "");
+  EXPECT_NE(error([](auto& c) { c.relations.pop_back(); }), "");
+  EXPECT_NE(error([](auto& c) { c.budget = -1; }), "");
+  for (const double spread : {-0.5, 1.5, kNan}) {
+    EXPECT_NE(error([&](auto& c) { c.relations.at(1).spread = spread; }), "") << spread;
+  }
+  EXPECT_NE(
+      damagedModel([](TrainedModel& m) { m.findings.at(0).parts.at(0).evidence.at(0) = -1; }), "");
 }
 
 TEST_F(BadModelsTest, WhatWouldTakeForeverIsRefused) {
-  EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(0, 1); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(100000, 0); }), "");
-  EXPECT_EQ(damagedModel([](Message& m) { m.encoding.exclude_topics = {"(([a-z/_])*)*#"}; }), "");
-  EXPECT_NE(damagedModel([](Message& m) {
-              m.encoding.exclude_topics = {"(((a{1,100}){1,100}){1,100}){1,100}"};
-            }),
-            "");
-  EXPECT_NE(damagedModel([](Message& m) {
-              const self_awareness::EventType type = m.event_types.at(0);
+  EXPECT_NE(damagedModel([](TrainedModel& m) { m.window = 1; }), "");
+  EXPECT_NE(damagedModel([](TrainedModel& m) { m.window = 100000 * kSecond; }), "");
+  const auto excluding = [this](const std::string& pattern) {
+    return damagedModel([&](TrainedModel& m) { m.encoding.exclude_topics = {pattern}; });
+  };
+  EXPECT_EQ(excluding("(([a-z/_])*)*#"), "");
+  EXPECT_NE(excluding("(((a{1,100}){1,100}){1,100}){1,100}"), "");
+  EXPECT_NE(damagedModel([](TrainedModel& m) {
               for (std::size_t k = 0; k <= kMostEventTypes; ++k) {
-                m.event_types.push_back(type);
-                m.event_types.back().scope = "/" + std::to_string(k);
+                m.statistics.intern({"/a", "/" + std::to_string(k), "T"});
               }
             }),
             "");
 }
 
-TEST_F(BadModelsTest, TimesThatWouldRunOverAreRefused) {
+TEST_F(BadModelsTest, TimesAndCountsThatWouldRunOverAreRefused) {
   // A fuzzer's: the core multiplies the latest first event.
   constexpr std::int64_t kLong = 9079256848778919936;
-  EXPECT_NE(
-      damagedModel([](Message& m) { m.watched.at(0).recordings.at(0).firsts.at(0) = kLong; }), "");
-  EXPECT_NE(damagedModel([](Message& m) {
-              m.evidence_calibration.at(0).firsts = {kLong, 0};
-            }),
+  const auto ofType = [this](void (*change)(core::evidence::Statistics::Type&)) {
+    return damagedModel([&](TrainedModel& m) { change(m.watched.halves[0].type(0)); });
+  };
+  EXPECT_NE(ofType([](auto& type) { type.longest_gaps.at(0) = kLong; }), "");
+  EXPECT_NE(ofType([](auto& type) { type.gap_sum = kLong; }), "");
+  EXPECT_NE(ofType([](auto& type) { type.gap_sum = -1; }), "");
+  EXPECT_NE(ofType([](auto& type) { type.gaps = ~std::uint64_t{0}; }), "");
+  EXPECT_NE(ofType([](auto& type) { type.gaps = 0; }), "");
+  EXPECT_NE(ofType([](auto& type) { type.gaps = 1; }), "") << "more delays than gaps";
+  EXPECT_NE(ofType([](auto& type) { type.gaps = type.events + 1; }), "");
+  EXPECT_NE(ofType([](auto& type) { type.longest_gaps.assign(33, 1); }), "");
+  EXPECT_NE(ofType([](auto& type) { type.longest_gaps.push_back(kSecond); }), "") << "no order";
+  EXPECT_NE(damagedModel([](TrainedModel& m) { m.watched.halves[0].addDuration(kLong); }), "");
+  EXPECT_NE(damagedModel([](TrainedModel& m) { m.watched.halves[0].addDuration(-kLong); }), "");
+  EXPECT_NE(damagedModel([](TrainedModel& m) { m.calibration->limits.firsts = {kLong, 0}; }), "");
+  EXPECT_NE(damagedModel(
+                [](TrainedModel& m) { m.findings.at(0).parts.at(0).longest_gaps.at(0) = kLong; }),
             "");
-  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(1).longest_gaps.at(0) = kLong; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(0).duration = kLong; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(0).gap_sums.at(0) = kLong; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(0).gaps.at(0) = ~std::uint64_t{0}; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(0).gaps.at(0) = 1; }), "")
-      << "more delays than gaps";
-  EXPECT_NE(damagedModel([](Message& m) { m.findings.at(0).longest_gaps.at(0) = kLong; }), "");
 }
 
-TEST_F(BadModelsTest, WhatContradictsItselfIsRefused) {
-  const ros::Time late(2000000000, 0);
-  EXPECT_NE(damagedModel([&](Message& m) { m.recordings.at(0).start = late; }), "");
-  EXPECT_NE(damagedModel([&](Message& m) { m.findings.at(0).start = late; }), "");
-  EXPECT_NE(damagedModel([&](Message& m) { m.watched.at(0).recordings.at(0).start = late; }), "");
-  EXPECT_NE(damagedModel(
-                [&](Message& m) { m.evidence_calibration.at(0).recordings.at(0).start = late; }),
-            "");
-  EXPECT_NE(damagedModel([](Message& m) { ++m.findings.at(1).windows; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.findings.at(0).evidence.at(0) = -1; }), "");
-  EXPECT_NE(damagedModel(
-                [](Message& m) { m.watched.at(0).gaps.at(0) = m.watched.at(0).events.at(0) + 1; }),
-            "");
-  for (const double spread : {-0.5, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
-    EXPECT_NE(damagedModel([&](Message& m) {
-                m.evidence_calibration.at(0).relations.at(1).spread = spread;
-              }),
-              "")
-        << spread;
-  }
+TEST_F(BadModelsTest, RecordingsThatCannotBeAreRefused) {
+  const auto error = [this](void (*change)(core::evidence::Statistics::Recording&)) {
+    return damagedModel([&](TrainedModel& m) {
+      core::evidence::Statistics::Recording recording = m.watched.halves[0].recordings().at(0);
+      change(recording);
+      m.watched.halves[0].addRecording(recording);
+    });
+  };
+  EXPECT_EQ(error([](auto& /*recording*/) {}), "");
+  EXPECT_NE(error([](auto& recording) { recording.events.push_back(1); }), "");
+  EXPECT_NE(error([](auto& recording) { recording.firsts.at(0) = kSecond << 30; }), "");
+  EXPECT_NE(error([](auto& recording) { recording.longest_stall = -1; }), "");
+  EXPECT_NE(error([](auto& recording) { recording.end = std::int64_t{1} << 62U; }), "");
+  EXPECT_NE(damagedModel([](TrainedModel& m) { ++m.findings.at(1).windows; }), "");
 }
 
 TEST_F(BadModelsTest, WhatIsThereTwiceIsRefused) {
-  EXPECT_NE(damagedModel([](Message& m) { m.tracks.at(1) = m.tracks.at(0); }), "");
-  EXPECT_NE(damagedModel([](Message& m) {
-              m.tuning.names.push_back(m.tuning.names.at(0));
-              m.tuning.values.push_back(m.tuning.values.at(0));
-            }),
+  EXPECT_NE(damagedModel([](TrainedModel& m) { m.watched.tracks.at(1) = m.watched.tracks.at(0); }),
             "");
-  EXPECT_NE(damagedModel([](Message& m) {
-              m.encoding.type_fields.push_back(m.encoding.type_fields.at(0));
-            }),
-            "");
-  EXPECT_NE(damagedModel([](Message& m) {
-              self_awareness::GraphEdge edge;
-              edge.publisher = "/a";
-              edge.topic = "/x";
-              edge.subscriber = "/b";
-              m.graph = {edge, edge};
-            }),
-            "");
-}
-
-TEST_F(BadModelsTest, CountsThatAreNotInOrderAreRefused) {
-  const auto swapped = [](auto& message) { message.id = 1 - message.id; };
-  EXPECT_NE(damagedMessages<self_awareness::PackedPairs>("/evidence/first", swapped), "");
-  EXPECT_NE(damagedMessages<self_awareness::PackedPairs>("/evidence/second",
-                                                         [](auto& message) { message.id = 0; }),
+  EXPECT_NE(damagedPart("/model",
+                        [](std::vector<std::uint8_t>& bytes) {
+                          const std::string text(bytes.begin(), bytes.end());
+                          const std::size_t at = text.find("fewest_gaps");
+                          ASSERT_NE(at, std::string::npos);
+                          const std::string other = "fewest_busy";
+                          std::copy(other.begin(), other.end(),
+                                    bytes.begin() + static_cast<std::ptrdiff_t>(at));
+                        }),
             "");
 }
 
 TEST_F(BadModelsTest, WhatAnotherProgramChangedIsRefused) {
   saveModel(calibratedModel(), path("whole"));
-  for (const std::string& topic :
-       {std::string("/version"), std::string("/model"), std::string("/evidence/first"),
-        std::string("/evidence/second")}) {
+  for (const char* topic : {"/version", "/model", "/evidence/first", "/evidence/second"}) {
     const rosbag::Bag whole(path("whole"), rosbag::bagmode::Read);
     rosbag::Bag changed(path("changed"), rosbag::bagmode::Write);
     for (const rosbag::MessageInstance& message : rosbag::View(whole)) {
-      if (message.getTopic() == "/version" && topic == "/version") {
-        const auto version = message.instantiate<self_awareness::FileVersion>();
+      if (message.getTopic() != topic) {
+        changed.write(message.getTopic(), message.getTime(), message);
+      } else if (const auto version = message.instantiate<self_awareness::FileVersion>()) {
         version->method = 1;
         changed.write(topic, message.getTime(), *version);
-      } else if (message.getTopic() == "/model" && topic == "/model") {
-        const auto model = message.instantiate<Message>();
-        std::swap(model->findings.at(0), model->findings.at(1));
-        changed.write(topic, message.getTime(), *model);
-      } else if (message.getTopic() == "/evidence/first" && topic == "/evidence/first") {
-        const auto pairs = message.instantiate<self_awareness::PackedPairs>();
-        ++pairs->others.at(0);
-        changed.write(topic, message.getTime(), *pairs);
-      } else if (message.getTopic() != topic) {
-        changed.write(message.getTopic(), message.getTime(), message);
+      } else if (const auto part = message.instantiate<self_awareness::ModelPart>()) {
+        part->bytes.at(0) ^= 1U;
+        changed.write(topic, message.getTime(), *part);
       }
     }
     changed.close();
@@ -238,17 +198,11 @@ TEST_F(BadModelsTest, NoModelIsWrittenThatCannotBeRead) {
 }
 
 TEST_F(BadModelsTest, TextsThatNoTerminalShouldGetAreRefused) {
-  EXPECT_NE(damagedModel([](Message& m) { m.recordings.at(0).bag = "a\x1B[2J.bag"; }), "");
-  EXPECT_NE(damagedModel([](Message& m) {
-              m.event_types.at(0).source =
-                  "/a\xE2\x80\xAE"
-                  "b";
-            }),
-            "");
-  EXPECT_NE(damagedModel([](Message& m) { m.evidence_calibration.at(0).method = "a\rb"; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.encoding.exclude_topics = {"a\x07"}; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.event_types.at(0).source = "/m\xFCller"; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.recordings.at(0).bag = "gr\xFC\xDF.bag"; }), "");
+  for (const char* text : {"a\x1B[2J.bag", "/a\xE2\x80\xAE", "a\rb", "a\x07", "gr\xFC\xDF"}) {
+    EXPECT_NE(damagedModel([&](TrainedModel& m) { m.recordings.at(0).bag = text; }), "");
+    EXPECT_NE(damagedModel([&](TrainedModel& m) { m.calibration->method = text; }), "");
+    EXPECT_NE(damagedModel([&](TrainedModel& m) { m.graph.connect("/a", text, "/b"); }), "");
+  }
 }
 
 }  // namespace

@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <stdexcept>
+#include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "model_file_case.h"
-#include "self_awareness/Model.h"
-#include "self_awareness/ros/model/evidence_message.h"
+#include "self_awareness/core/evidence/channel/track.h"
 #include "self_awareness/ros/model/model_bytes.h"
-#include "self_awareness/ros/model/tuning_message.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -143,130 +142,87 @@ TEST_F(ModelFileTest, WhatSpeaksForRelationsComesBackAsItWasSaved) {
     EXPECT_EQ(relation.spread, 0.25);
     EXPECT_EQ(relation.starts, 2U);
     EXPECT_EQ(relation.starts_needed, 3U);
-    EXPECT_EQ(toMessage(relation).starts_needed, 3U);
   }
 }
 
-TEST_F(ModelFileTest, DamagedFindingsAreRefused) {
-  using Message = self_awareness::Model;
-  using Findings = self_awareness::RecordingFindings;
+TEST_F(ModelFileTest, FindingsThatDoNotFitTheTracksAreRefused) {
   const std::string file = path("damaged") + ": a damaged model file: its findings ";
+  using Findings = core::evidence::LimitFinder::Recording;
   for (const auto change :
-       std::vector<void (*)(Findings&)>{[](Findings& f) { f.part_windows.push_back(1); },
-                                        [](Findings& f) { f.evidence.pop_back(); },
-                                        [](Findings& f) { f.longest_gaps.push_back(1); },
+       std::vector<void (*)(Findings&)>{[](Findings& f) { f.parts.at(0).evidence.pop_back(); },
+                                        [](Findings& f) { f.parts.at(0).longest_gaps = {1}; },
                                         [](Findings& f) { f.said.pop_back(); }}) {
-    EXPECT_EQ(damagedModel([change](Message& model) { change(model.findings.at(1)); }),
+    EXPECT_EQ(damagedModel([change](TrainedModel& model) { change(model.findings.at(1)); }),
               file + "do not fit its tracks");
   }
-  EXPECT_EQ(damagedModel([](Message& model) { model.findings.at(0).said.at(0) = 3; }),
-            file + "say what this version does not know");
-  const auto recording = [this](void (*change)(self_awareness::RecordingCounts&)) {
-    return damagedModel(
-        [change](Message& model) { change(model.watched.at(0).recordings.at(0)); });
-  };
-  const std::string told =
-      path("damaged") + ": a damaged model file: its recordings do not fit its event types";
-  EXPECT_EQ(recording([](self_awareness::RecordingCounts& r) { r.events.push_back(1); }), told);
-  EXPECT_EQ(recording([](self_awareness::RecordingCounts& r) {
-              r.events.push_back(1);
-              r.longest_gaps.push_back(1);
+  EXPECT_EQ(damagedModel([](TrainedModel& model) {
+              model.findings.at(0).said.at(0) = static_cast<core::evidence::Said>(3);
             }),
-            told);
+            file + "say what this version does not know");
 }
 
-TEST_F(ModelFileTest, DamagedEvidenceIsRefused) {
-  using Message = self_awareness::Model;
-  using Evidence = self_awareness::Evidence;
-  const auto error = [this](void (*change)(Evidence&)) {
-    return damagedModel([change](Message& model) { change(model.watched.at(1)); });
+TEST_F(ModelFileTest, DamagedPairsAreRefused) {
+  // Of one other type: its id, answers, first bin and counts; what was left out, and of which
+  // pairs.
+  using Counts = std::vector<std::uint32_t>;
+  const auto error = [this](core::EventId other, std::size_t first, const Counts& counts,
+                            const std::vector<std::uint8_t>& pairs = {}) {
+    return damagedPart("/evidence/first", [&](std::vector<std::uint8_t>& bytes) {
+      ByteWriter written;
+      written(std::size_t{1}, other, std::uint64_t{0}, first, counts, false, pairs);
+      bytes = written.take();
+    });
   };
-  const std::string file = path("damaged") + ": a damaged model file: its evidence ";
-  for (const auto change : std::vector<void (*)(Evidence&)>{
-           [](Evidence& e) { e.events.pop_back(); }, [](Evidence& e) { e.gaps.push_back(1); },
-           [](Evidence& e) { e.gap_sums.clear(); }, [](Evidence& e) { e.rate_sums.pop_back(); },
-           [](Evidence& e) { e.rate_squares.pop_back(); },
-           [](Evidence& e) { e.longest_offsets.clear(); },
-           [](Evidence& e) { e.longest_offsets.at(1) = 1000000; },
-           [](Evidence& e) { e.longest_gaps.pop_back(); },
-           [](Evidence& e) { e.left_out.pop_back(); }, [](Evidence& e) { e.pairs.pop_back(); },
-           [](Evidence& e) { e.pairs.at(0).id = 1; },
-           [](Evidence& e) { e.pairs.at(0).offsets.at(0) = 1; },
-           [](Evidence& e) { e.pairs.at(0).offsets.at(1) = 1000; },
-           [](Evidence& e) { e.pairs.at(0).counts.pop_back(); },
-           [](Evidence& e) { e.pairs.at(0).answers.push_back(1); }}) {
-    EXPECT_EQ(error(change), file + "does not fit its event types");
-  }
-  EXPECT_EQ(error([](Evidence& e) { e.duration = -1; }), file + "has a negative duration");
-  EXPECT_EQ(error([](Evidence& e) { e.gap_sums.at(0) = -1; }), file + "has impossible gaps");
-  EXPECT_EQ(error([](Evidence& e) { e.gaps.at(0) = 0; }), file + "has impossible gaps");
-  EXPECT_EQ(error([](Evidence& e) { e.pairs.at(0).bins.at(0) = 255; }),
-            file + "has an impossible bin");
-  EXPECT_EQ(damagedModel([](Message& model) { model.watched.pop_back(); }),
-            file + "has not two halves");
+  const std::string file = path("damaged") + ": a damaged model file: ";
+  EXPECT_EQ(error(1, 49, {7}), "");
+  EXPECT_EQ(error(1, 49, {1, 1}), file + "its evidence has an impossible bin");
+  EXPECT_EQ(error(0, 0, {1000}), file + "its evidence has more delays than gaps");
+  EXPECT_NE(error(2, 0, {1}), "") << "there is no such type";
+  EXPECT_NE(error(1, 0, {1}, {4}), "") << "nor this one";
+  EXPECT_NE(error(1, 0, {1}, {2}), "") << "it has counts of this pair";
 }
 
 TEST_F(ModelFileTest, AnImpossibleTuningIsRefused) {
-  using Message = self_awareness::Model;
-  const std::string file = path("damaged") + ": a damaged model file: ";
-  EXPECT_EQ(damagedModel([](Message& m) {
-              std::vector<std::string>& names = m.tuning.names;
-              const auto name = std::find(names.begin(), names.end(), "least_effect");
-              m.tuning.values.at(static_cast<std::size_t>(name - names.begin())) = -0.001;
-            }),
-            file + "least_effect must be from 0 to 1000 s, not -0.001");
-  EXPECT_EQ(damagedModel([](Message& m) { m.tuning.values.pop_back(); }),
-            file + "its tuning has names without numbers");
-}
-
-TEST(TuningMessage, WhatIsMissingHasItsDefaultAndWhatIsUnknownIsLeftOut) {
-  self_awareness::Model message;
-  message.tuning.names = {"of_tomorrow", "least_effect"};
-  message.tuning.values = {-7, 0.003};
-  message.tuning.without = {"of tomorrow", "fewer"};
-  core::evidence::Tuning expected;
-  expected.least_effect = 0.003;
-  expected.rare_misses = 1;  // it had no such rule
-  expected.without = {"fewer"};
-  EXPECT_TRUE(tuningOf(message) == expected);
-}
-
-TEST(TuningMessage, AFileOfFormat1HasThreeNumbers) {
-  self_awareness::Model message;
-  message.predecessors = 5;
-  message.least_effect = 7e6;  // [ns]
-  message.least_effect_of_period = 0.01;
-  core::evidence::Tuning expected;
-  expected.predecessors = 4;  // besides its own gaps
-  expected.least_effect = 0.007;
-  expected.least_effect_of_period = 0.01;
-  expected.rare_misses = 1;
-  EXPECT_TRUE(tuningOf(message) == expected);
-  message.least_effect = -1e6;
-  EXPECT_THROW(tuningOf(message), std::invalid_argument);
+  EXPECT_EQ(damagedModel([](TrainedModel& m) { m.tuning.least_effect = -0.001; }),
+            path("damaged") +
+                ": a damaged model file: least_effect must be from 0 to 1000 s, not -0.001");
 }
 
 TEST_F(ModelFileTest, ImpossibleTracksAreRefused) {
-  using Message = self_awareness::Model;
   EXPECT_EQ(
-      damagedModel([](Message& m) { m.tracks.at(0).to_id = 2; }),
+      damagedModel([](TrainedModel& m) { m.watched.tracks.at(0).to = 2; }),
       path("damaged") + ": a damaged model file: it watches an event type that it does not have");
+}
+
+/// Gives a text another name of the same length, wherever it is or the first time.
+void rename(std::vector<std::uint8_t>& bytes, const std::string& text, const std::string& name) {
+  const auto at = std::search(bytes.begin(), bytes.end(), text.begin(), text.end());
+  ASSERT_NE(at, bytes.end()) << text;
+  std::copy(name.begin(), name.end(), at);
 }
 
 TEST_F(ModelFileTest, WhatThisVersionDoesNotKnowIsNotWatchedAndAllElseIs) {
   const TrainedModel whole = calibratedModel();
-  ASSERT_EQ(damagedModel([](self_awareness::Model& m) { m.tracks.at(1).name = "smell"; }), "");
+  std::string name = channelName(whole.watched.tracks.at(1));
+  name.insert(name.begin(), static_cast<char>(name.size()));
+  std::string unknown = name;
+  unknown.back() = '?';
+  ASSERT_EQ(channelName(whole.watched.tracks.at(0)), channelName(whole.watched.tracks.at(1)));
+  ASSERT_EQ(damagedPart("/model",
+                        [&](std::vector<std::uint8_t>& bytes) { rename(bytes, name, unknown); }),
+            "");
   const TrainedModel model = loadModel(path("damaged"));
+  EXPECT_EQ(model.left_out, (std::set<std::string>{unknown.substr(1)}));
   ASSERT_EQ(model.watched.tracks.size() + 1, whole.watched.tracks.size());
-  EXPECT_EQ(model.limits()->tracks.size(), model.watched.tracks.size());
-  EXPECT_TRUE(std::isnan(model.limits()->tracks[0]));
-  EXPECT_EQ(model.limits()->tracks[1], 2.5);
+  EXPECT_EQ(model.limits()->tracks,
+            std::vector<double>(model.watched.tracks.size(), 2.5));  // the first one had none
   EXPECT_EQ(model.calibration->relations.size(), model.watched.tracks.size());
+  EXPECT_TRUE(model.calibration->relations.at(0).watched) << "that of the second one";
   for (std::size_t k = 0; k < model.findings.size(); ++k) {
     const core::evidence::LimitFinder::Recording& all = whole.findings[k];
     const core::evidence::LimitFinder::Recording& left = model.findings[k];
-    EXPECT_EQ(left.said[0], all.said[0]);
-    EXPECT_EQ(left.said[1], all.said[2]);
+    EXPECT_EQ(left.said,
+              (std::vector<core::evidence::Said>(all.said.begin() + 1, all.said.end())));
     for (std::size_t part = 0; part < all.parts.size(); ++part) {
       EXPECT_EQ(left.parts[part].evidence[1], all.parts[part].evidence[2]);
     }
@@ -275,17 +231,24 @@ TEST_F(ModelFileTest, WhatThisVersionDoesNotKnowIsNotWatchedAndAllElseIs) {
   EXPECT_EQ(loadModel(path("again")).watched.tracks.size(), model.watched.tracks.size());
 }
 
+TEST_F(ModelFileTest, OfATuningWhatIsMissingHasItsDefaultAndWhatIsUnknownIsLeftOut) {
+  ASSERT_EQ(damagedPart("/model",
+                        [](std::vector<std::uint8_t>& bytes) {
+                          rename(bytes, "fewest_gaps", "fewest_gape");
+                        }),
+            "");
+  EXPECT_TRUE(loadModel(path("damaged")).tuning == core::evidence::Tuning());
+}
+
 TEST_F(ModelFileTest, LimitsOfAnotherModelAreRefused) {
-  using Message = self_awareness::Model;
-  const std::string told =
-      path("damaged") + ": a damaged model file: its limits are not those of its evidence";
-  for (const auto change : std::vector<void (*)(self_awareness::EvidenceCalibration&)>{
-           [](self_awareness::EvidenceCalibration& c) { c.limits.pop_back(); },
-           [](self_awareness::EvidenceCalibration& c) { c.limits.push_back(1); },
-           [](self_awareness::EvidenceCalibration& c) { c.limits.clear(); }}) {
-    const std::string error =
-        damagedModel([change](Message& model) { change(model.evidence_calibration.at(0)); });
-    EXPECT_EQ(error.rfind(told, 0), 0U) << error;
+  for (const std::size_t tracks : {0, 1, 1000}) {
+    const std::string error = damagedModel(
+        [&](TrainedModel& model) { model.calibration->limits.tracks.assign(tracks, 1); });
+    EXPECT_EQ(error.rfind(path("damaged") +
+                              ": a damaged model file: its limits are not those of its evidence",
+                          0),
+              0U)
+        << error;
   }
 }
 

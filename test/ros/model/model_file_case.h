@@ -6,11 +6,16 @@
 
 #include <boost/filesystem.hpp>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/paper/delay_trainer.h"
+#include "ros/model/model_parts.h"
+#include "self_awareness/ModelPart.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/count/trainer.h"
 #include "self_awareness/core/evidence/limits/limits.h"
@@ -133,21 +138,30 @@ class ModelFileTest : public testing::Test {
     damaged.close();
     return modelError(path("damaged"));
   }
-  template <typename Message, typename Change>
-  std::string damagedMessages(const std::string& topic, Change change) {
+  // The same, of the first part on a topic.
+  template <typename Change>
+  std::string damagedPart(const std::string& topic, Change change) {
+    bool done = false;
     return damagedFile([&](rosbag::Bag& damaged, const rosbag::MessageInstance& message) {
-      if (message.getTopic() == topic) {
-        const auto changed = message.instantiate<Message>();
-        change(*changed);
-        damaged.write(topic, message.getTime(), *changed);
+      if (message.getTopic() == topic && !std::exchange(done, true)) {
+        const auto part = message.instantiate<self_awareness::ModelPart>();
+        change(part->bytes);
+        damaged.write(topic, message.getTime(), *part);
       } else {
         damaged.write(message.getTopic(), message.getTime(), message);
       }
     });
   }
+  // The same, of a model that a test has changed and nobody has looked at.
   template <typename Change>
   std::string damagedModel(Change change) {
-    return damagedMessages<self_awareness::Model>("/model", change);
+    return damagedPart("/model", [&](std::vector<std::uint8_t>& bytes) {
+      TrainedModel model = calibratedModel();
+      change(model);
+      ByteWriter written;
+      writeModel(model, written);
+      bytes = written.take();
+    });
   }
 
   boost::filesystem::path folder_;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "model_file_case.h"
+#include "ros/model/model_fields.h"
 #include "self_awareness/DelayHistograms.h"
 #include "self_awareness/ros/model/model_bytes.h"
 
@@ -94,50 +95,42 @@ TEST_F(ModelFileTest, SaysWhatIsWrongWithAModelFile) {
 }
 
 TEST_F(ModelFileTest, ADamagedModelIsRefused) {
-  EXPECT_EQ(damagedModel([](self_awareness::Model& /*model*/) {}), "");
-  using Message = self_awareness::Model;
-  EXPECT_NE(damagedModel([](Message& m) { m.bin_size = 0; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(0); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(-1); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.event_types[1] = m.event_types[0]; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.event_types.clear(); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.encoding.source = "colour"; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.encoding.exclude_topics = {"("}; }), "");
-  EXPECT_NE(damagedModel([](Message& m) {
-              m.calibration.resize(1);
-              m.calibration[0].threshold = std::nan("");
-            }),
+  using Model = TrainedModel;
+  EXPECT_EQ(damagedModel([](Model& /*m*/) {}), "");
+  EXPECT_NE(damagedModel([](Model& m) { m.window = 0; }), "");
+  EXPECT_NE(damagedModel([](Model& m) { m.window = -core::kNanosecondsPerSecond; }), "");
+  EXPECT_NE(damagedModel([](Model& m) { m.statistics = core::paper::DelayStatistics({}); }), "");
+  EXPECT_NE(damagedModel([](Model& m) { m.encoding.exclude_topics = {"("}; }), "");
+  EXPECT_NE(damagedModel([](Model& m) { m.paper_calibration.emplace().threshold = std::nan(""); }),
+            "");
+  EXPECT_NE(damagedPart("/model", [](std::vector<std::uint8_t>& bytes) { bytes.push_back(0); }),
             "");
 }
 
 TEST_F(ModelFileTest, DamagedDelaysAreRefused) {
-  using Delays = self_awareness::DelayHistograms;
-  const auto error = [this](void (*change)(Delays&)) {
-    return damagedMessages<Delays>("/delays", change);
+  using Entries = core::paper::Histogram::Entries;
+  const auto error = [this](const Entries& from_a, const Entries& from_b) {
+    return damagedPart("/delays", [&](std::vector<std::uint8_t>& bytes) {
+      ByteWriter written;
+      written(from_a, from_b);
+      bytes = written.take();
+    });
   };
-  EXPECT_EQ(error([](Delays& /*d*/) {}), "");
-  const std::string file = path("damaged") + ": a damaged model file: ";
-  for (const auto change : std::vector<void (*)(Delays&)>{
-           [](Delays& d) { d.offsets.pop_back(); }, [](Delays& d) { d.bins.pop_back(); },
-           [](Delays& d) { d.offsets[1] = 1000000; }, [](Delays& d) { d.to_id = 2; }}) {
-    EXPECT_EQ(error(change), file + "its histograms do not fit its event types");
-  }
-  EXPECT_EQ(error([](Delays& d) { d.counts[0] = 0; }), file + "a histogram has an impossible bin");
-  EXPECT_EQ(error([](Delays& d) { d.bins[0] = -1; }), file + "a histogram has an impossible bin");
-  EXPECT_EQ(error([](Delays& d) {
-              d.offsets = {0, 2, 2};
-              d.bins = {3, 3};
-              d.counts = {1, 1};
-            }),
-            file + "a histogram has an impossible bin");
+  EXPECT_EQ(error({{0, 1}, {3, 2}}, {}), "");
+  const std::string told =
+      path("damaged") + ": a damaged model file: a histogram has an impossible bin";
+  EXPECT_EQ(error({{0, 0}}, {}), told);
+  EXPECT_EQ(error({{-1, 1}}, {}), told);
+  EXPECT_EQ(error({}, {{3, 1}, {3, 1}}), told);
+  EXPECT_EQ(error({{std::numeric_limits<std::int64_t>::max(), 1}}, {}), told);
 }
 
 TEST_F(ModelFileTest, AMissingMessageIsRefused) {
   const std::string file = path("damaged") + ": a damaged model file: ";
   for (const auto& [missing, told] : std::map<std::string, std::string>{
-           {"/delays", "its histograms do not fit its event types"},
-           {"/evidence/first", "its evidence does not fit its event types"},
-           {"/evidence/second", "its evidence does not fit its event types"}}) {
+           {"/delays", "its counts do not fit its event types"},
+           {"/evidence/first", "its counts do not fit its event types"},
+           {"/evidence/second", "its counts do not fit its event types"}}) {
     bool left_out = false;
     const std::string topic = missing;
     const std::string error =

@@ -2,25 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/filesystem.hpp>
-#include <fstream>
-#include <iterator>
 #include <string>
 
+#include "kept_file_case.h"
 #include "ros/verdict/incidents_file.h"
 #include "ros/verdict/one_message_file.h"
 #include "self_awareness/Acceptances.h"
-#include "self_awareness/ros/bag/bag_reader.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-namespace fs = boost::filesystem;
-
-class AcceptedFileTest : public testing::Test {
+class AcceptedFileTest : public KeptFileTest {
  protected:
   AcceptedFileTest() {
-    fs::create_directory(folder_);
     core::Acceptance acceptance;
     acceptance.component = "/rostopic";
     acceptance.topic = "/cmd_vel";
@@ -35,34 +29,21 @@ class AcceptedFileTest : public testing::Test {
     acceptance.together = {"/arm", "/laser", "/wheels"};
     accepted_.add(acceptance);
   }
-  ~AcceptedFileTest() override { fs::remove_all(folder_); }
-  AcceptedFileTest(const AcceptedFileTest&) = delete;
-  AcceptedFileTest& operator=(const AcceptedFileTest&) = delete;
-
-  std::string written() {
-    writeAccepted(accepted_, path_);
-    std::ifstream file(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  /// Why a file is refused; empty: it is not.
-  std::string error() const {
+  void write() override { writeAccepted(accepted_, path_); }
+  void read() override { readAccepted(path_); }
+  /// Why a file with such entries is refused; empty: it is not.
+  std::string errorOf(const self_awareness::Acceptance& entry, std::size_t entries = 1) {
+    self_awareness::Acceptances message;
+    message.accepted.assign(entries, entry);
+    writeOneMessage({kAcceptedFile, "/accepted", "", 1 << 20}, message, ros::TIME_MIN, path_);
     try {
-      readAccepted(path_);
+      read();
       return "";
     } catch (const BagError& error) {
       return error.what();
     }
   }
-  /// The same of a file with one such entry.
-  std::string errorOf(const self_awareness::Acceptance& entry, std::size_t entries = 1) const {
-    self_awareness::Acceptances message;
-    message.accepted.assign(entries, entry);
-    writeOneMessage({kAcceptedFile, "/accepted", "", 1 << 20}, message, ros::TIME_MIN, path_);
-    return error();
-  }
 
-  const fs::path folder_ = fs::temp_directory_path() / fs::unique_path();
-  const std::string path_ = pathOfAccepted((folder_ / "robot.model").string());
   core::Acceptances accepted_;
 };
 
@@ -80,11 +61,7 @@ TEST_F(AcceptedFileTest, IsReadAsItWasWritten) {
 }
 
 TEST_F(AcceptedFileTest, ADamagedFileIsRefusedByName) {
-  const std::string good = written();
-  for (std::size_t size = 0; size < good.size(); size += 41) {
-    std::ofstream(path_, std::ios::binary) << good.substr(0, size);
-    EXPECT_EQ(error().rfind(path_ + ": ", 0), 0U) << size;
-  }
+  expectNoBeliefInDamage();
 }
 
 TEST_F(AcceptedFileTest, WhatCannotBeIsRefused) {

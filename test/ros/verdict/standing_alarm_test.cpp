@@ -2,24 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/filesystem.hpp>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <string>
 
-#include "self_awareness/ros/bag/bag_reader.h"
+#include "kept_file_case.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-namespace fs = boost::filesystem;
 using self_awareness::SelfAwareness;
 
-class StandingAlarmTest : public testing::Test {
+class StandingAlarmTest : public KeptFileTest {
  protected:
   StandingAlarmTest() {
-    fs::create_directory(folder_);
     standing_.run_id = "run";
     standing_.recording = "/files/alarm.bag";
     SelfAwareness& alarm = standing_.alarm;
@@ -36,25 +31,8 @@ class StandingAlarmTest : public testing::Test {
     suspect.since.sec = 7;
     alarm.suspects = {suspect};
   }
-  ~StandingAlarmTest() override { fs::remove_all(folder_); }
-  StandingAlarmTest(const StandingAlarmTest&) = delete;
-  StandingAlarmTest& operator=(const StandingAlarmTest&) = delete;
-
-  std::string written() {
-    writeStandingAlarm(standing_, path_);
-    std::ifstream file(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  /// Why a file with these bytes is refused; empty: it is not.
-  std::string errorOf(const std::string& bytes) {
-    std::ofstream(path_, std::ios::binary) << bytes;
-    try {
-      readStandingAlarm(path_);
-      return "";
-    } catch (const BagError& error) {
-      return error.what();
-    }
-  }
+  void write() override { writeStandingAlarm(standing_, path_); }
+  void read() override { readStandingAlarm(path_); }
   void expectRefused(const std::string& why, const std::function<void(SelfAwareness&)>& change) {
     const self_awareness::StandingAlarm before = standing_;
     change(standing_.alarm);
@@ -62,8 +40,6 @@ class StandingAlarmTest : public testing::Test {
     standing_ = before;
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / fs::unique_path();
-  const std::string path_ = (folder_ / "standing_alarm.bag").string();
   self_awareness::StandingAlarm standing_;
 };
 
@@ -79,18 +55,7 @@ TEST_F(StandingAlarmTest, IsReadAsItWasWritten) {
 }
 
 TEST_F(StandingAlarmTest, ADamagedFileIsRefusedByName) {
-  const std::string good = written();
-  ASSERT_EQ(errorOf(good), "");
-  for (std::size_t size = 0; size < good.size(); size += 37) {
-    EXPECT_EQ(errorOf(good.substr(0, size)).rfind(path_ + ": ", 0), 0U) << size;
-  }
-  for (std::size_t place = 0; place < good.size(); place += 11) {
-    std::string bad = good;
-    bad[place] = static_cast<char>(bad[place] ^ 0xff);
-    errorOf(bad);  // whatever it is, it is said or read
-  }
-  EXPECT_NE(errorOf("no bag"), "");
-  EXPECT_NE(errorOf(std::string(2 << 20, 'x')), "");
+  expectNoBeliefInDamage();
 }
 
 TEST_F(StandingAlarmTest, WhatCannotBeIsRefused) {

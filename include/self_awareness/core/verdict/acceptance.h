@@ -20,6 +20,7 @@ struct Acceptance {
     kConnections,  ///< what it does not subscribe to
     kNothing,      ///< what no component does: a busy machine, all silent, two senders
     kMode,         ///< that components are off together while others go on
+    kAbsence,      ///< that it is absent; while it is there, it is judged
     kAll           ///< whatever it does
   };
 
@@ -50,6 +51,8 @@ class Acceptances {
   /// Adds one, or replaces the one that is like it.
   /// @return whether there is room for it
   bool add(const Acceptance& acceptance);
+  /// Adds all of others, however many there are.
+  void add(const Acceptances& others);
   /// Takes back all that fits: of a mode, one of its components has to.
   /// @param pattern its names are patterns; no kind: any. A mode: that of the same components
   /// @return what is taken back
@@ -58,6 +61,8 @@ class Acceptances {
   /// Whether something that an event type does is accepted; of kUnsubscribed, that a component
   /// does not subscribe to a topic.
   bool covers(const std::string& component, const std::string& topic, Kind kind) const;
+  /// Whether it is accepted that an event type is absent, and no more than that.
+  bool mayBeAbsent(const std::string& component, const std::string& topic) const;
   /// Whether it is accepted that these are off together: all are of one mode.
   /// @param off names of components, in order
   bool coversMode(const std::vector<std::string>& off) const;

@@ -78,9 +78,6 @@ class Detector : private WindowObserver {
   /// and heard nothing, all but silence settles as at the start, for 3 s at least, and an alarm
   /// that stands goes on meanwhile.
   void hear(const Waiting& waiting);
-  /// Takes note of who may be absent. What is unusual of them while they are there is judged.
-  /// @param patterns names of components or topics, or their begins and a `*`
-  void setOptional(const std::vector<std::string>& patterns) { judge_->setOptional(patterns); }
   /// Takes what is accepted as normal from now on, in place of what was before. It is no unknown
   /// event any more, and no alarm of before the start waits for it.
   void accept(const Acceptances& accepted);

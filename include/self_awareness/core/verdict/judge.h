@@ -85,9 +85,6 @@ class Judge {
   virtual void accept(const Acceptances& /*accepted*/) {}
   /// Whether something that an event type does is accepted, or it may be absent and is.
   virtual bool isAccepted(EventId /*id*/, Kind /*kind*/) const { return false; }
-  /// Takes note of who may be absent: names of components or topics, or their begins and a `*`.
-  /// What is unusual of them while they are there is judged.
-  virtual void setOptional(const std::vector<std::string>& /*patterns*/) {}
   /// Takes note of all subscriptions that every start of the training had and that are missing
   /// from now on, although the source is known to the master. Who judges by events alone has no
   /// use for it.

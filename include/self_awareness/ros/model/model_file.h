@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "self_awareness/FileVersion.h"
-#include "self_awareness/Model.h"
 #include "self_awareness/core/model.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/file_version.h"
@@ -38,11 +37,6 @@ enum class ModelCounts {
   kDelays,   ///< also those of the paper's detector, if there are any
   kAll
 };
-
-/// The message on the topic /model of a model file.
-self_awareness::Model toMessage(const TrainedModel& model);
-/// @throw std::invalid_argument names the contradiction in the message
-TrainedModel fromMessage(const self_awareness::Model& message);
 
 /// Writes the whole file or nothing (see OutputFile): no program ever reads half a model.
 /// @throw ModelFileError if the file cannot be written, or loadModel() would refuse it

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "core/evidence/channel/channel.h"
-#include "self_awareness/core/verdict/name_pattern.h"
 
 namespace self_awareness::core::evidence {
 
@@ -17,17 +16,11 @@ Excused::Excused(std::shared_ptr<const Model> model, std::shared_ptr<const Vocab
 void Excused::accept(const Acceptances& accepted) {
   accepted_ = accepted;
   is_accepted_.clear();
-  update();
-}
-
-void Excused::setOptional(const std::vector<std::string>& patterns) {
   for (EventId id = 0; id < model_->size(); ++id) {
-    is_optional_[id] = isOneOf(patterns, model_->component(id), model_->vocabulary().at(id).scope);
+    is_optional_[id] =
+        accepted.mayBeAbsent(model_->component(id), model_->vocabulary().at(id).scope);
+    may_be_silent_[id] = is_optional_[id] || isAccepted(id, Kind::kDied);
   }
-  update();
-}
-
-void Excused::update() {
   tracks_.clear();
   optional_.clear();
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
@@ -37,9 +30,6 @@ void Excused::update() {
     } else if (is_optional_[watched.to] || is_optional_[watched.from]) {
       optional_.push_back(track);
     }
-  }
-  for (EventId id = 0; id < model_->size(); ++id) {
-    may_be_silent_[id] = is_optional_[id] || isAccepted(id, Kind::kDied);
   }
 }
 

@@ -16,8 +16,7 @@
 
 namespace self_awareness::core::evidence {
 
-/// Knows what is no evidence: what somebody has accepted (docs/accept.md), and the absence of who
-/// is optional.
+/// Knows what is no evidence: what somebody has accepted (docs/accept.md).
 class Excused {
  public:
   /// @param heard event types by id, those of the model first; may grow. None: those that the
@@ -26,11 +25,6 @@ class Excused {
 
   /// Takes what is accepted, in place of what was before.
   void accept(const Acceptances& accepted);
-
-  /// Takes note of who may be absent, in place of what was before.
-  /// @param patterns names of components or topics, or their begins and a `*`
-  void setOptional(const std::vector<std::string>& patterns);
-
   /// Whether an event type of the model is one that may be absent, and was, for longer than rates
   /// count: a shorter gap is no absence.
   /// @param gap since its last event [ns]
@@ -52,7 +46,6 @@ class Excused {
   bool isAccepted(EventId id, Kind kind) const;
   /// Whether what a track says is accepted.
   bool covers(const Track& track) const;
-  void update();
   bool isAbsent(EventId id, const Heard& heard) const;
 
   std::shared_ptr<const Model> model_;

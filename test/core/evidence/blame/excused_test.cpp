@@ -121,7 +121,12 @@ TEST_F(ExcusedTest, OnlySuspectsOfThatKindAreDropped) {
 
 TEST_F(ExcusedTest, WhoIsOptionalMayBeMissing) {
   EXPECT_FALSE(excused_.isExcused(kB, Kind::kDied));
-  excused_.setOptional({"/b"});
+  Acceptances accepted;
+  Acceptance absence;
+  absence.component = "/b";
+  absence.kind = Kind::kNeverCame;
+  accepted.add(absence);
+  excused_.accept(accepted);
   EXPECT_TRUE(excused_.isExcused(kB, Kind::kDied));
   EXPECT_TRUE(excused_.isExcused(kB, Kind::kNeverCame));
   EXPECT_FALSE(excused_.isExcused(kB, Kind::kSlow));
