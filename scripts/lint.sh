@@ -46,13 +46,17 @@ python_programs() { grep -l '^#!/usr/bin/python3' nodes/* scripts/*; }
 # What is in the build.
 tidy() {
   needs 14. clang-tidy
-  local build=${SELF_AWARENESS_BUILD:-$workspace/build} sources status=0
+  local build=${SELF_AWARENESS_BUILD:-$workspace/build} sources folder status=0
   [ -e "$build/compile_commands.json" ] || cannot "there is no build in $build"
-  sources=$(sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$build/compile_commands.json" |
-    sort -u)
+  folder=$(mktemp -d)
+  # Headers that g++ has compiled before are none for clang.
+  sed 's/-include [^ ]*cmake_pch.hxx//' "$build/compile_commands.json" > "$folder/compile_commands.json"
+  sources=$(sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$folder/compile_commands.json" |
+    grep -v '/cmake_pch\.hxx' | sort -u)
   # The number of warnings in headers of others, for each file, tells nothing.
-  xargs --max-procs "$(nproc)" --max-args 1 clang-tidy --quiet -p "$build" <<< "$sources" 2>&1 |
+  xargs --max-procs "$(nproc)" --max-args 1 clang-tidy --quiet -p "$folder" <<< "$sources" 2>&1 |
     { grep -v '^[0-9]* warnings\{0,1\} .*generated\.$' || true; } || status=1
+  rm -r "$folder"
   return "$status"
 }
 
