@@ -2,7 +2,6 @@
 """What an operator accepts is normal from now on, for other starts and for training, too."""
 
 import os
-import subprocess
 from typing import Any, Dict, Tuple
 
 import rospy
@@ -10,19 +9,13 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 import self_awareness
-from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         operation, write_bag)
-from monitor_case import MonitorCase
+from live_system import (MonitorListener, again_if_disturbed, await_condition, run_program,
+                         talker)
+from monitor_case import TrainedCase, subscribers
 from self_awareness.msg import Acceptance, SelfAwareness
 from self_awareness.srv import Accept, AcceptResponse
 
 NODE = '/self_awareness'
-
-
-def talker(name: str, topic: str, rate: float) -> Process:
-    """A node whose periods vary as those of operation()."""
-    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
-                   '_rate:={}'.format(rate), '_variation:=0.3')
 
 
 def accept(**what: Any) -> AcceptResponse:
@@ -30,34 +23,7 @@ def accept(**what: Any) -> AcceptResponse:
     return rospy.ServiceProxy(NODE + '/accept', Accept)(**what)
 
 
-class TrainedCase(MonitorCase):
-    """With a model of /driver and /base."""
-
-    components = [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)]
-    """Source, topic and mean period [s] of each."""
-
-    def setUp(self) -> None:
-        super().setUp()
-        self.bags = [write_bag(self.path('{}.bag'.format(seed)),
-                               operation(self.components, 120, seed)) for seed in (1, 2)]
-        self.train()
-
-    def train(self) -> str:
-        done = subprocess.run(['rosrun', 'self_awareness', 'train', *self.bags, '-o',
-                               self.path('model')], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout
-
-    def trained_monitor(self, **options: Any) -> Process:
-        return self.monitor(self.path('model'), **{'detector': 'evidence', 'unknown': 'warn',
-                                                   'subscribe': 'all', **options})
-
-    def await_heard(self, listener: MonitorListener, *nodes: str) -> None:
-        for node in nodes:
-            await_condition(node + ' is heard', lambda: (
-                float(listener.value(node, 'events a second') or 0) > 1), 30)
-        listener.await_settled()
+class AcceptTest(TrainedCase):
 
     def await_value(self, listener: MonitorListener, key: str, words: str) -> None:
         await_condition('{}: {}'.format(key, words), lambda: (
@@ -71,15 +37,12 @@ class TrainedCase(MonitorCase):
                     and 'unknown events' not in status.message)
         await_condition('normal', is_normal, 20)
 
-
-class AcceptTest(TrainedCase):
-
     @again_if_disturbed
     def test_a_new_node_is_told_once_and_accepted_for_other_starts(self) -> None:
         file = self.path('model.accepted')
         with talker('base', '/odom', 10), talker('driver', '/scan', 12.5):
             with self.trained_monitor() as monitor, MonitorListener() as listener:
-                self.await_heard(listener, '/driver', '/base')
+                listener.await_heard('/driver', '/base')
                 with talker('joystick', '/joy', 10):
                     await_condition('it is told', lambda: any(
                         alarm.level == SelfAwareness.WARN and '/joystick' in alarm.message
@@ -101,9 +64,8 @@ class AcceptTest(TrainedCase):
                 monitor.stop()
             with self.trained_monitor() as monitor, MonitorListener() as listener:
                 with talker('joystick', '/joy', 10):
-                    self.await_heard(listener, '/driver', '/base')
-                    await_condition('its connection', lambda: '/joy' in subprocess.run(
-                        ['rosnode', 'info', NODE], stdout=subprocess.PIPE, text=True).stdout, 20)
+                    listener.await_heard('/driver', '/base')
+                    await_condition('it listens', lambda: NODE in subscribers('/joy'), 20)
                     with talker('another', '/new', 10):  # as long as it takes to tell of it
                         await_condition('another is told', lambda: any(
                             '/another' in alarm.message for alarm in listener.alarms), 20)
@@ -119,7 +81,7 @@ class AcceptTest(TrainedCase):
     def test_what_stands_is_accepted_until_it_is_trained(self) -> None:
         with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
             with talker('driver', '/scan', 12.5):
-                self.await_heard(listener, '/driver', '/base')
+                listener.await_heard('/driver', '/base')
             alarm = listener.await_alarm()
             self.assertEqual(alarm.component, '/driver')
             self.assertIn('does not stand any more', accept(alarm=alarm.alarm + 1).message)
@@ -132,9 +94,7 @@ class AcceptTest(TrainedCase):
             self.assertIn('(died)', listener.value('/driver', 'accepted'))
             self.await_value(listener, 'not watched', '/driver (accepted)')
             self.assertIn('not watched: accepted', listener.diagnostics('/driver')[-1].message)
-            seen = len(listener.statuses)
-            await_condition('windows after it', lambda: len(listener.statuses) > seen + 50, 20)
-            self.assertFalse([status.message for status in listener.statuses[seen:]
+            self.assertFalse([status.message for status in listener.next_statuses(50)
                               if any(each.component == '/driver' for each in status.suspects)])
             said = accept(component='/driver', undo=True)
             self.assertTrue(said.success, said.message)
@@ -151,7 +111,7 @@ class AcceptTest(TrainedCase):
                    self_awareness.Acceptance('/joystick', '/joy', 'stranger', 1, '/rqt'),
                    self_awareness.Acceptance('/dri*', '', '', 1, '/rqt')]
         self_awareness.write_accepted(entries, self.path('model.accepted'))
-        said = self.train()
+        said = run_program('train', *self.bags, '-o', self.path('model'))
         self.assertIn('learned now, so it is judged again: /driver on /scan (slow)', said)
         self.assertIn('accepted, and not learned: /base\n', said)
         self.assertEqual(self_awareness.read_accepted(self.path('model.accepted')), entries[1:])
@@ -160,7 +120,7 @@ class AcceptTest(TrainedCase):
     def test_messages_that_are_accepted_do_not_hide_a_death(self) -> None:
         with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
             with talker('driver', '/scan', 12.5):
-                self.await_heard(listener, '/driver', '/base')
+                listener.await_heard('/driver', '/base')
                 said = accept(component='/driver', kind='other size', more=[
                     Acceptance(component='/driver', kind='slow'),
                     Acceptance(component='driver')])
@@ -176,7 +136,7 @@ class AcceptTest(TrainedCase):
     @again_if_disturbed
     def test_what_cannot_be_accepted_is_refused(self) -> None:
         with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
-            self.await_heard(listener, '/base')
+            listener.await_heard('/base')
             refused: Tuple[Tuple[Dict[str, Any], str], ...] = (
                 ({'kind': 'slow'}, 'name a component or a topic'),
                 ({'component': '/a', 'kind': 'odd'}, 'kind: odd is not a kind'),

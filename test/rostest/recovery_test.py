@@ -18,7 +18,8 @@ import yaml
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
-from live_system import MonitorListener, Process, again_if_disturbed, await_condition, pid_of
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition, ours,
+                         path_of, pid_of, run_program)
 from monitor_case import MonitorCase
 from self_awareness.msg import RecoveryAction, RecoveryActions
 from self_awareness.srv import Maintenance, MaintenanceResponse
@@ -84,9 +85,7 @@ class RecoveryTest(MonitorCase):
         for command in (('simulate', '-o', cls.bags, '--duration', '120', '--runs', '2'),
                         ('train', os.path.join(cls.bags, 'normal_1.bag'),
                          os.path.join(cls.bags, 'normal_2.bag'), '-o', cls.trained)):
-            done = subprocess.run(('rosrun', 'self_awareness', *command), text=True,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-            assert done.returncode == 0, done.stdout
+            run_program(*command)
         cls.heard = Heard()
         cls.robot = Process('roslaunch', '--wait', 'self_awareness', 'follow_me.launch',
                             'respawn:=true')
@@ -107,7 +106,7 @@ class RecoveryTest(MonitorCase):
         """Needs a monitor: where that keeps its incidents is read once."""
         await_condition('the monitor', lambda: rospy.has_param(
             '/self_awareness/recorder/directory'), 20)
-        return Process('rosrun', 'self_awareness', 'recovery.py', rules)
+        return ours('recovery.py', rules)
 
     def await_player(self) -> None:
         begin = time.monotonic()
@@ -156,7 +155,7 @@ class RecoveryTest(MonitorCase):
 
     def test_it_is_not_started_with_rules_that_it_cannot_use(self) -> None:
         done = subprocess.run(
-            ('rosrun', 'self_awareness', 'recovery.py', self.rules({'stop': ['/.*']})),
+            (path_of('recovery.py'), self.rules({'stop': ['/.*']})),
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
         self.assertEqual(done.returncode, 1)
         self.assertIn('rules.yaml: rules[0].steps[0].stop: ', done.stderr)
@@ -188,10 +187,8 @@ class RecoveryTest(MonitorCase):
             self.assertIn('stop /player', {each.key: each.value for each in status.values}[
                 'action 1'])
             self.assertEqual({node: pid_of(node) for node in others}, before)
-            shown = json.loads(subprocess.run(
-                ('rosrun', 'self_awareness', 'incidents', '--json', '--file',
-                 self.path('recorder/self_awareness.incidents')), text=True, check=True,
-                stdout=subprocess.PIPE).stdout)
+            shown = json.loads(run_program('incidents', '--json', '--file',
+                                           self.path('recorder/self_awareness.incidents')))
             self.assertEqual([[did['action'] for did in each['actions']] for each in shown
                               if each['id'] == alarm.alarm], [['stop /player']])
 

@@ -15,7 +15,7 @@ from typing import List
 import rospy
 import rostest
 
-from live_system import MonitorListener, Process, again_if_disturbed, await_condition
+from live_system import MonitorListener, Process, again_if_disturbed, await_condition, path_of
 from monitor_case import MonitorCase, Talker
 from self_awareness.msg import SelfAwareness
 
@@ -77,7 +77,7 @@ class Terminal:
 
 
 def top(**environment: str) -> Terminal:
-    return Terminal('rosrun', 'self_awareness', 'top', **environment)
+    return Terminal(path_of('top'), **environment)
 
 
 class TopTest(MonitorCase):
@@ -164,7 +164,7 @@ class TopTest(MonitorCase):
             self.assertIn('no master answers at ' + address, terminal.text)
 
     def test_without_a_terminal_it_says_so(self) -> None:
-        done = subprocess.run(('rosrun', 'self_awareness', 'top'), stdin=subprocess.DEVNULL,
+        done = subprocess.run((path_of('top'),), stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn('needs a terminal', done.stderr)
