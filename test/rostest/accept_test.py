@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What an operator accepts is normal from now on, for other starts and for training, too."""
+"""What an operator accepts is normal from now on, for other starts, too."""
 
 import os
 from typing import Any, Dict, Tuple
@@ -8,11 +8,9 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-import self_awareness
-from live_system import (MonitorListener, again_if_disturbed, await_condition, run_program,
-                         talker)
+from live_system import MonitorListener, again_if_disturbed, await_condition, talker
 from monitor_case import TrainedCase, subscribers
-from self_awareness.msg import Acceptance, SelfAwareness
+from self_awareness.msg import SelfAwareness
 from self_awareness.srv import Accept, AcceptResponse
 
 NODE = '/self_awareness'
@@ -102,36 +100,6 @@ class AcceptTest(TrainedCase):
             await_condition('it is an alarm again', lambda: (
                 listener.alarms[-1].level == SelfAwareness.ERROR), 20)
             self.assertFalse(accept(component='/driver', undo=True).success, 'it is not accepted')
-
-    def test_training_learns_what_is_accepted(self) -> None:
-        ended = max(each.end for each in
-                    self_awareness.TrainedModel.load(self.path('model')).recordings)
-        entries = [self_awareness.Acceptance('/driver', '/scan', 'slow', ended - 1, '/rqt'),
-                   self_awareness.Acceptance('/base', '', '', ended + 1, '/rqt'),
-                   self_awareness.Acceptance('/joystick', '/joy', 'stranger', 1, '/rqt'),
-                   self_awareness.Acceptance('/dri*', '', '', 1, '/rqt')]
-        self_awareness.write_accepted(entries, self.path('model.accepted'))
-        said = run_program('train', *self.bags, '-o', self.path('model'))
-        self.assertIn('learned now, so it is judged again: /driver on /scan (slow)', said)
-        self.assertIn('accepted, and not learned: /base\n', said)
-        self.assertEqual(self_awareness.read_accepted(self.path('model.accepted')), entries[1:])
-
-    @again_if_disturbed
-    def test_messages_that_are_accepted_do_not_hide_a_death(self) -> None:
-        with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
-            with talker('driver', '/scan', 12.5):
-                listener.await_heard('/driver', '/base')
-                said = accept(component='/driver', kind='other size', more=[
-                    Acceptance(component='/driver', kind='slow'),
-                    Acceptance(component='driver')])
-                self.assertFalse(said.success)
-                self.assertIn('2 of 3: normal from now on: /driver (other size), /driver (slow)',
-                              said.message)
-                await_condition('it is told', lambda: (
-                    'other size' in (listener.value('/driver', 'accepted') or '')), 20)
-                float(listener.value('/driver', 'death found after [s]'))
-            alarm = listener.await_alarm()
-            self.assertEqual((alarm.component, alarm.kind), ('/driver', 'died'))
 
     @again_if_disturbed
     def test_what_cannot_be_accepted_is_refused(self) -> None:
