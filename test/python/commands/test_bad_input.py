@@ -2,8 +2,6 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
 from pathlib import Path
 from typing import Callable, Dict, List
 
@@ -13,7 +11,6 @@ from conftest import robot
 
 from self_awareness.commands import calibrate, info, merge, score, train
 
-SCRIPTS = Path(__file__).resolve().parents[3] / 'scripts'
 PROGRAMS = {'train': train, 'calibrate': calibrate, 'score': score, 'info': info,
             'merge': merge}
 
@@ -147,22 +144,6 @@ def test_a_bad_model_is_named(contents: str, model_file: str, robot_bags, tmp_pa
     assert not (tmp_path / 'm').exists()
 
 
-def test_no_input_and_no_recording_is_overwritten(robot_bags, model_file: str, tmp_path: Path,
-                                                  capsys) -> None:
-    contents = [Path(path).read_bytes() for path in (*robot_bags, model_file)]
-    for program, arguments in (
-            ('train', [robot_bags[0], '-o', robot_bags[0]]),
-            ('train', [robot_bags[0], '-o', robot_bags[1]]),  # the order was mixed up
-            ('calibrate', ['--model', model_file, '--normal', robot_bags[1], '-o',
-                           robot_bags[1]]),
-            ('calibrate', ['--model', model_file, '--normal', robot_bags[1], '-o',
-                           str(tmp_path / 'm'), '--csv', str(tmp_path / 'm')]),
-            ('score', [robot_bags[1], '--model', model_file, '--csv', robot_bags[1]]),
-            ('score', [robot_bags[1], '--model', model_file, '--csv', model_file])):
-        error_of(program, arguments, capsys)
-    assert [Path(path).read_bytes() for path in (*robot_bags, model_file)] == contents
-
-
 def test_a_result_without_a_folder_is_told_before_the_work(robot_bags, model_file: str,
                                                            tmp_path: Path, capsys) -> None:
     nowhere = str(tmp_path / 'no' / 'where')
@@ -211,18 +192,6 @@ def test_a_range_or_horizon_that_does_not_fit_is_told(robot_bags, tmp_path: Path
     for options, told in ((['--start', '5', '--end', '4'], 'start < end'),
                           (['--horizon', '0.015'], 'multiple')):
         assert told in error_of('train', [robot_bags[0], *options, *output], capsys)
-
-
-@pytest.mark.parametrize('name', sorted(PROGRAMS))
-def test_the_script_runs_and_explains_itself(name: str) -> None:
-    script = SCRIPTS / name
-    assert os.access(script, os.X_OK)
-    help_text = subprocess.run([sys.executable, str(script), '--help'], stdout=subprocess.PIPE,
-                               text=True, check=True).stdout
-    assert help_text.startswith(f'usage: {name} ')
-    wrong = subprocess.run([sys.executable, str(script), '--no-such-option'],
-                           stderr=subprocess.PIPE, text=True)
-    assert wrong.returncode == 2 and 'usage' in wrong.stderr
 
 
 def test_ctrl_c_ends_it(monkeypatch, model_file: str, capsys) -> None:
