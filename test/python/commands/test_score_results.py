@@ -1,7 +1,6 @@
 """`score --result-bag`: what the monitor would have published, with the times of the recording."""
 from __future__ import annotations
 
-import itertools
 import json
 import os
 import re
@@ -102,33 +101,6 @@ def test_programs_need_not_parse_words(evidence_model: str, results: Tuple[str, 
     assert first['usual'] < first['value'] and first['after'] is None
 
 
-def test_where_all_are_silent_nobody_is_to_blame(evidence_model: str, tmp_path: Path,
-                                                 make_bag: Callable[..., str]) -> None:
-    bag, values = make_bag('silent.bag', [
-        m for m in jittery_robot(3000.0, 30.0, 3) if not 3012.0 <= m[0] < 3020.0]), tmp_path / 'j'
-    assert score.main([bag, '--model', evidence_model, '--json', str(values)]) == 0
-    found, = [alarm for alarm in json.loads(values.read_text())['recordings'][0]['alarms']
-              if alarm['level'] == 'ERROR']
-    assert (found['kind'], found['culprit']) == ('all silent', None)
-    assert len({suspect['component'] for suspect in found['suspects'] + found['later']}) > 1
-
-
-def test_an_alarm_keeps_its_id_until_it_is_over(results: Tuple[str, str]) -> None:
-    path, _ = results
-    said = [(message.level, message.alarm) for message, _ in read(path, STATUS)]
-    stretches = [alarms for level, alarms in
-                 ((level, {alarm for _, alarm in same})
-                  for level, same in itertools.groupby(said, lambda each: each[0]))
-                 if level != OK]
-    assert all(len(alarms) == 1 for alarms in stretches)
-    ids = [alarm for alarms in stretches for alarm in alarms]
-    assert ids == sorted(set(ids)) and 0 not in ids
-    ended = [(alarm, now) for (level, alarm), (after, now) in zip(said, said[1:])
-             if level != OK and after == OK]
-    assert ended and all(alarm == now for alarm, now in ended), 'which one is over'
-    assert {alarm for level, alarm in said if level == OK} - set(ids) == {0}
-
-
 def test_times_are_those_of_the_recording(results: Tuple[str, str], dead_laser: str) -> None:
     path, _ = results
     with rosbag.Bag(path) as bag, rosbag.Bag(dead_laser) as recording:
@@ -208,24 +180,6 @@ def test_recordings_that_overlap_are_refused(
     assert not os.path.exists(path)
     assert score.main([f'{bag}@0-10', f'{bag}@10', '--model', evidence_model,
                        '--result-bag', path]) == 0
-
-
-def test_a_result_bag_replaces_a_result_bag_only(
-        evidence_model: str, results: Tuple[str, str], dead_laser: str,
-        make_bag: Callable[..., str], tmp_path: Path, capsys) -> None:
-    path, _ = results
-    before = Path(path).read_bytes()
-    assert score.main([f'{dead_laser}@0-20', '--model', evidence_model,
-                       '--result-bag', path]) == 0
-    assert Path(path).read_bytes() != before
-    precious = make_bag('precious.bag', jittery_robot(3000.0, 10.0, 3))
-    Path(path).write_bytes(Path(path).read_bytes()[:-100])  # as if it were being written
-    for file, reason in ((precious, 'no result bag'), (path, 'no result bag'),
-                         (dead_laser, 'is an input, too'), (evidence_model, 'is an input, too')):
-        kept = Path(file).read_bytes()
-        assert score.main([dead_laser, '--model', evidence_model, '--result-bag', file]) == 1
-        assert reason in capsys.readouterr().err
-        assert Path(file).read_bytes() == kept
 
 
 def test_a_recording_that_cannot_be_judged_keeps_no_other_from_it(
