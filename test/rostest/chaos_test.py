@@ -289,7 +289,7 @@ class ChaosTest(TrainedCase):
                 self.await_said(listener, 'monitor', OVERLOADED, DiagnosticStatus.WARN)
                 listener.next_statuses(20)
                 self.check_no_alarm(listener)
-                self.check_alarm_names(listener, victim)
+                self.check_alarm_names(listener, victim, signal.SIGSTOP)
             self.assertGreater(int(listener.value('monitor', 'dropped messages') or 0), 0)
 
     @again_if_disturbed
