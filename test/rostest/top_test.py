@@ -123,15 +123,6 @@ class TopTest(MonitorCase):
                     listener.alarms[-1].level == SelfAwareness.OK), 20)
 
     @again_if_disturbed
-    def test_it_shows_who_is_not_heard_yet_and_whom_nobody_watches(self) -> None:
-        model = self.model(topics=['/a', '/late'], sources={'/late': '/late'})
-        with self.monitor(model), Talker('/a'), top() as terminal, Process(
-                'rosrun', 'topic_tools', 'relay', '/a', '/relayed', '__name:=relay'):
-            terminal.await_text('1 of 2 heard so far')
-            terminal.await_text('/relay ')
-            terminal.await_text('not watched: training never')
-
-    @again_if_disturbed
     def test_a_monitor_that_hangs_is_stale_and_keys_go_on(self) -> None:
         with self.monitor(self.model()) as monitor, MonitorListener() as listener:
             with Talker('/a'), top() as terminal:
