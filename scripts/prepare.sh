@@ -119,7 +119,8 @@ build() {
   ! on_debian_11 || options+=(-DCMAKE_DISABLE_FIND_PACKAGE_GMock=TRUE)
   find_plugins_of_debian_11
   # "|| return", because set -e has no effect inside a condition.
-  catkin_make --directory "$workspace" "${options[@]}" "$@" || return
+  # With -j alone: by default, catkin_make starts nothing while the load is high, which a build makes it.
+  catkin_make --directory "$workspace" -j"$(nproc)" "${options[@]}" "$@" || return
   say_time Building "$begin"
   source_ros "$workspace/devel/setup.bash"
   find_plugins_of_debian_11

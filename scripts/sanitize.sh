@@ -27,7 +27,7 @@ done
 
 install_packages
 install_apt valgrind
-build  # the programs in Python that the tests use
+build all talker  # the programs that the tests use, but for what is tested
 
 use_loopback
 tests=$checkout/test/sanitizers

@@ -19,10 +19,11 @@ run() {
   say_time "Testing: $1" "$begin"
 }
 
+# Nobody looks at a test with a debugger: what that needs takes a quarter of the time to compile.
+options=(-DSELF_AWARENESS_WERROR=ON '-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O2 -DNDEBUG')
 if [ "${1:-}" = quick ]; then
   # The same options as in the whole: CMake does not run again, in the workspace's own environment.
-  build -DSELF_AWARENESS_WERROR=ON
-  build -DSELF_AWARENESS_WERROR=ON core_test ros_test monitor_test
+  build "${options[@]}" all core_test ros_test monitor_test
   use_loopback
   mkdir -p "$results"
   for test in core_test ros_test monitor_test; do
@@ -33,14 +34,13 @@ if [ "${1:-}" = quick ]; then
     "$checkout"/test/python/{core,calibration,comparison,live_view,reporting,training}
   exec /usr/bin/python3 "$checkout/test/count_results.py" "$results" gtest pytest
 fi
-build -DSELF_AWARENESS_WERROR=ON
-build -DSELF_AWARENESS_WERROR=ON tests
+build "${options[@]}" all tests
 use_loopback
 for tests in gtest pytest roslaunch-check; do
   run $tests make -C "$workspace/build" "run_tests_self_awareness_$tests" -j1
 done
 # Live tests mostly wait.
-run rostest make -C "$workspace/build" run_tests_self_awareness_rostest -j4
+run rostest make -C "$workspace/build" run_tests_self_awareness_rostest -j6
 
 catkin_test_results --verbose "$results" || true
 exec /usr/bin/python3 "$checkout/test/count_results.py" "$results" gtest pytest rostest

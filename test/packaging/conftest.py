@@ -30,9 +30,9 @@ def cpp_of_embedding_page() -> str:
     return '\n'.join(re.findall(r'```cpp\n(.*?)```', EMBEDDING, re.DOTALL))
 
 
-def run_project_of_embedding_page(folder: Path, word: str, *options: str,
-                                  env: Optional[Dict[str, str]] = None) -> str:
-    """Build the page's program by one of its CMakeLists.txt; return what it prints.
+def configure_project_of_embedding_page(folder: Path, word: str, *options: str,
+                                        env: Optional[Dict[str, str]] = None) -> None:
+    """Prepare to build the page's program by one of its CMakeLists.txt.
 
     Args:
         folder: where to build; empty, or with what the project needs.
@@ -45,6 +45,12 @@ def run_project_of_embedding_page(folder: Path, word: str, *options: str,
     (folder / 'CMakeLists.txt').write_text(project, encoding='utf-8')
     (folder / EXAMPLE.name).write_text(cpp_of_embedding_page(), encoding='utf-8')
     run('cmake', '-S', folder, '-B', folder / 'build', *options, env=env)
+
+
+def run_project_of_embedding_page(folder: Path, word: str, *options: str,
+                                  env: Optional[Dict[str, str]] = None) -> str:
+    """Prepare it so, and build it; return what it prints."""
+    configure_project_of_embedding_page(folder, word, *options, env=env)
     run('cmake', '--build', folder / 'build', '-j2', env=env)
     program, = [path for path in (folder / 'build').rglob(EXAMPLE.stem) if path.is_file()]
     return run(program, env=env)

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from conftest import (ALARM, EMBEDDING, EXAMPLE, ROOT, cpp_of_embedding_page, run,
-                      run_project_of_embedding_page)
+from conftest import (ALARM, EMBEDDING, EXAMPLE, ROOT, configure_project_of_embedding_page,
+                      cpp_of_embedding_page, run, run_project_of_embedding_page)
 
 INCLUDE = ROOT / 'include'
 HEADERS = sorted(str(path.relative_to(INCLUDE))
@@ -51,13 +51,17 @@ def test_a_project_finds_it_installed(build: Path, tmp_path: Path) -> None:
         tmp_path, 'find_package(self_awareness_core',
         f'-DCMAKE_PREFIX_PATH={build.parent / "installed"}')
     assert ALARM.fullmatch(printed), printed
+    assert f'```\n{printed}```' in EMBEDDING
 
 
 def test_a_project_builds_it_as_a_part_of_itself(tmp_path: Path) -> None:
+    """Of the core, one source: that all of them can be compiled and linked is shown above."""
     (tmp_path / 'self_awareness').symlink_to(ROOT)
-    printed = run_project_of_embedding_page(tmp_path, 'add_subdirectory(', *QUICK)
-    assert ALARM.fullmatch(printed), printed
-    assert f'```\n{printed}```' in EMBEDDING
+    configure_project_of_embedding_page(tmp_path, 'add_subdirectory(', *QUICK)
+    run('make', '-C', tmp_path / 'build', f'{EXAMPLE.name}.o')
+    core, = (path.parent for path in (tmp_path / 'build').rglob('Makefile')
+             if 'learn.cpp.o:' in path.read_text(encoding='utf-8'))
+    run('make', '-C', core, 'learn.cpp.o')
 
 
 @pytest.mark.parametrize('header', HEADERS)

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import (Any, Callable, Dict, Iterable, Iterator, List, NamedTuple, Optional, Sequence,
+from typing import (Any, Callable, Dict, Iterable, Iterator, NamedTuple, Optional, Sequence,
                     Tuple)
 
 import pytest
@@ -22,11 +22,6 @@ from self_awareness import LimitFindings, TrainedModel, Tuning
 
 Message = Tuple[float, str, str]
 """Stamp [s], source, topic."""
-
-
-def pytest_collection_modifyitems(items: List[pytest.Item]) -> None:
-    """Start with what mostly waits: other processes run the rest meanwhile."""
-    items.sort(key=lambda item: 'reader' not in getattr(item, 'fixturenames', ()))
 
 
 @pytest.fixture(scope='session')

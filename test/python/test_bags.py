@@ -11,7 +11,6 @@ from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import Image
 
 from self_awareness import EncodingRules, EventLogWriter, read_events, summarise_bag
-from self_awareness.commands import train
 
 _IMAGE_BYTES = 1_000_000
 
@@ -34,13 +33,6 @@ def image_bag(tmp_path_factory: pytest.TempPathFactory) -> str:
 def _bytes_read() -> int:
     counts = dict(line.split(': ') for line in Path('/proc/self/io').read_text().splitlines())
     return int(counts['rchar'])
-
-
-def test_training_reads_next_to_nothing_of_the_images(image_bag: str, tmp_path: Path) -> None:
-    before = _bytes_read()
-    assert train.main([image_bag, '-o', str(tmp_path / 'camera.model')]) == 0
-    read = _bytes_read() - before
-    assert 600 * 12 < read < 0.05 * Path(image_bag).stat().st_size
 
 
 def test_events_outlive_what_they_were_read_with(image_bag: str) -> None:

@@ -6,27 +6,43 @@ import signal
 import subprocess
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Dict, Iterator, Tuple
+from typing import Dict, Iterator, List, Tuple
+from unittest import mock
 from xml.etree import ElementTree
 
 import pytest
-import yaml
+from roslaunch import arg_dump, node_args
+from roslaunch.config import ROSLaunchConfig
+from roslaunch.xmlloader import XmlLoader
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = sorted((ROOT / 'launch').glob('*.launch'))
 LONG_S = 60
 
 
-def _roslaunch(*words: object, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(('roslaunch', *map(str, words)), cwd=cwd, stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True, timeout=60,
-                          env={**os.environ, 'PWD': str(cwd)})
+def _roslaunch(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(('roslaunch', *words), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True, timeout=60)
 
 
-def _parameters(cwd: Path, file: str, *arguments: str) -> Dict[str, object]:
-    done = _roslaunch('--dump-params', 'self_awareness', file, *arguments, cwd=cwd)
-    assert done.returncode == 0, done.stderr
-    return yaml.safe_load(done.stdout)
+def _loaded(file: str, *arguments: str, cwd: Path = ROOT) -> ROSLaunchConfig:
+    """Return what roslaunch makes of a file, for somebody in a folder."""
+    config = ROSLaunchConfig()
+    with mock.patch.dict(os.environ, PWD=str(cwd)):
+        XmlLoader().load(str(ROOT / 'launch' / file), config, argv=list(arguments), verbose=False)
+    return config
+
+
+def _parameters(file: str, *arguments: str, cwd: Path = ROOT) -> Dict[str, object]:
+    return {str(name): parameter.value
+            for name, parameter in _loaded(file, *arguments, cwd=cwd).params.items()}
+
+
+def _words(file: str, *arguments: str, cwd: Path = ROOT) -> List[str]:
+    """Return the command by which the node /self_awareness is started."""
+    with mock.patch.dict(os.environ, PWD=str(cwd)):
+        return list(node_args.get_node_args(
+            '/self_awareness', [(str(ROOT / 'launch' / file), list(arguments))]))
 
 
 @pytest.mark.parametrize('path', FILES, ids=lambda path: path.name)
@@ -35,8 +51,7 @@ def test_every_argument_says_what_it_is(path: Path) -> None:
                  if each.get('value') is None]
     assert arguments
     assert [each.get('name') for each in arguments if not each.get('doc')] == []
-    done = _roslaunch('--ros-args', 'self_awareness', path.name)
-    assert all(str(each.get('name')) in done.stdout for each in arguments)
+    assert {each.get('name') for each in arguments} <= set(arg_dump.get_args([str(path)]))
 
 
 @pytest.mark.parametrize('given, meant', [
@@ -47,24 +62,22 @@ def test_a_relative_path_means_the_folder_of_who_launches(given: str, meant: str
     meant = meant.format(cwd=tmp_path, home=Path.home())
     for launched in (('monitor.launch',), ('learn.launch',),
                      ('monitor.launch', 'standalone:=false')):
-        parameters = _parameters(tmp_path, *launched, f'model:={given}')
+        parameters = _parameters(*launched, f'model:={given}', cwd=tmp_path)
         assert [parameters[name] for name in parameters if name.endswith('/model')] == [meant]
-    recorder = _parameters(tmp_path, 'record.launch', f'output:={given}')
+    recorder = _parameters('record.launch', f'output:={given}', cwd=tmp_path)
     assert recorder['/recorder/output'] == meant
 
 
 def test_logs_and_encoding_of_the_learner_are_relative_to_the_same_folder(tmp_path: Path) -> None:
-    done = _roslaunch('--args', '/self_awareness', 'self_awareness', 'learn.launch',
-                      'model:=r.model', 'encoding:=e.yaml', cwd=tmp_path)
-    words = done.stdout.split()
-    assert words[words.index('--logs') + 1].strip("'") == f'{tmp_path}/r.model.logs'
-    assert words[words.index('--encoding') + 1].strip("'") == f'{tmp_path}/e.yaml'
+    words = _words('learn.launch', 'model:=r.model', 'encoding:=e.yaml', cwd=tmp_path)
+    assert words[words.index('--logs') + 1] == f'{tmp_path}/r.model.logs'
+    assert words[words.index('--encoding') + 1] == f'{tmp_path}/e.yaml'
 
 
 @pytest.mark.parametrize('launched', [
     ('monitor.launch',), ('monitor.launch', 'standalone:=false'), ('learn.launch',)])
 def test_no_launch_sets_parameters_of_a_monitor_that_runs(launched: Tuple[str, ...]) -> None:
-    names = [name for _ in range(2) for name in _parameters(ROOT, *launched)]
+    names = [name for _ in range(2) for name in _parameters(*launched)]
     assert len(names) == len(set(names)) > 0
     assert [name for name in names if name.startswith('/self_awareness/')] == []
 
@@ -72,8 +85,7 @@ def test_no_launch_sets_parameters_of_a_monitor_that_runs(launched: Tuple[str, .
 @pytest.mark.parametrize('what, node', [('events', '/recorder'), ('event', '/recorder'),
                                         ('bags', '/record'), ('bag', '/record')])
 def test_one_or_many_are_the_same(what: str, node: str) -> None:
-    done = _roslaunch('--nodes', 'self_awareness', 'record.launch', f'what:={what}')
-    assert node in done.stdout.split()
+    assert node in node_args.get_node_list(_loaded('record.launch', f'what:={what}'))
 
 
 def test_what_is_neither_is_told_in_a_sentence() -> None:
@@ -147,7 +159,6 @@ def test_a_node_gets_the_signal_and_its_exit_code_is_handed_on(number: int, to_a
     ('monitor.launch',), ('monitor.launch', 'standalone:=false'), ('learn.launch',),
     ('recovery.launch', 'name:=self_awareness')])
 def test_who_is_respawned_is_started_so(launched: Tuple[str, ...]) -> None:
-    done = _roslaunch('--args', '/self_awareness', 'self_awareness', *launched)
-    words = done.stdout.split()
+    words = _words(*launched)
     assert words[0] == 'bash' and words[1].endswith('/launch/until_refused.sh')
     assert os.path.isfile(words[1])

@@ -2,26 +2,18 @@
 """What an operator accepts is normal from now on, for other starts, too."""
 
 import os
-import subprocess
 from typing import Any
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         operation, write_bag)
-from monitor_case import MonitorCase
+from live_system import MonitorListener, again_if_disturbed, await_condition, talker
+from monitor_case import TrainedCase, subscribers
 from self_awareness.msg import SelfAwareness
 from self_awareness.srv import Accept, AcceptResponse
 
 NODE = '/self_awareness'
-
-
-def talker(name: str, topic: str, rate: float) -> Process:
-    """A node whose periods vary as those of operation()."""
-    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
-                   '_rate:={}'.format(rate), '_variation:=0.3')
 
 
 def accept(**what: Any) -> AcceptResponse:
@@ -29,34 +21,7 @@ def accept(**what: Any) -> AcceptResponse:
     return rospy.ServiceProxy(NODE + '/accept', Accept)(**what)
 
 
-class TrainedCase(MonitorCase):
-    """With a model of /driver and /base."""
-
-    components = [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)]
-    """Source, topic and mean period [s] of each."""
-
-    def setUp(self) -> None:
-        super().setUp()
-        self.bags = [write_bag(self.path('{}.bag'.format(seed)),
-                               operation(self.components, 120, seed)) for seed in (1, 2)]
-        self.train()
-
-    def train(self) -> str:
-        done = subprocess.run(['rosrun', 'self_awareness', 'train', *self.bags, '-o',
-                               self.path('model')], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout
-
-    def trained_monitor(self, **options: Any) -> Process:
-        return self.monitor(self.path('model'), **{'detector': 'evidence', 'unknown': 'warn',
-                                                   'subscribe': 'all', **options})
-
-    def await_heard(self, listener: MonitorListener, *nodes: str) -> None:
-        for node in nodes:
-            await_condition(node + ' is heard', lambda: (
-                float(listener.value(node, 'events a second') or 0) > 1), 30)
-        listener.await_settled()
+class AcceptTest(TrainedCase):
 
     def await_value(self, listener: MonitorListener, key: str, words: str) -> None:
         await_condition('{}: {}'.format(key, words), lambda: (
@@ -70,15 +35,12 @@ class TrainedCase(MonitorCase):
                     and 'unknown events' not in status.message)
         await_condition('normal', is_normal, 20)
 
-
-class AcceptTest(TrainedCase):
-
     @again_if_disturbed
     def test_a_new_node_is_told_once_and_accepted_for_other_starts(self) -> None:
         file = self.path('model.accepted')
         with talker('base', '/odom', 10), talker('driver', '/scan', 12.5):
             with self.trained_monitor() as monitor, MonitorListener() as listener:
-                self.await_heard(listener, '/driver', '/base')
+                listener.await_heard('/driver', '/base')
                 with talker('joystick', '/joy', 10):
                     await_condition('it is told', lambda: any(
                         alarm.level == SelfAwareness.WARN and '/joystick' in alarm.message
@@ -100,9 +62,8 @@ class AcceptTest(TrainedCase):
                 monitor.stop()
             with self.trained_monitor() as monitor, MonitorListener() as listener:
                 with talker('joystick', '/joy', 10):
-                    self.await_heard(listener, '/driver', '/base')
-                    await_condition('its connection', lambda: '/joy' in subprocess.run(
-                        ['rosnode', 'info', NODE], stdout=subprocess.PIPE, text=True).stdout, 20)
+                    listener.await_heard('/driver', '/base')
+                    await_condition('it listens', lambda: NODE in subscribers('/joy'), 20)
                     with talker('another', '/new', 10):  # as long as it takes to tell of it
                         await_condition('another is told', lambda: any(
                             '/another' in alarm.message for alarm in listener.alarms), 20)
@@ -118,7 +79,7 @@ class AcceptTest(TrainedCase):
     def test_what_stands_is_accepted_until_it_is_trained(self) -> None:
         with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
             with talker('driver', '/scan', 12.5):
-                self.await_heard(listener, '/driver', '/base')
+                listener.await_heard('/driver', '/base')
             alarm = listener.await_alarm()
             self.assertEqual(alarm.component, '/driver')
             self.assertIn('does not stand any more', accept(alarm=alarm.alarm + 1).message)
@@ -131,9 +92,7 @@ class AcceptTest(TrainedCase):
             self.assertIn('(died)', listener.value('/driver', 'accepted'))
             self.await_value(listener, 'not watched', '/driver (accepted)')
             self.assertIn('not watched: accepted', listener.diagnostics('/driver')[-1].message)
-            seen = len(listener.statuses)
-            await_condition('windows after it', lambda: len(listener.statuses) > seen + 50, 20)
-            self.assertFalse([status.message for status in listener.statuses[seen:]
+            self.assertFalse([status.message for status in listener.next_statuses(50)
                               if any(each.component == '/driver' for each in status.suspects)])
             said = accept(component='/driver', undo=True)
             self.assertTrue(said.success, said.message)

@@ -5,11 +5,8 @@ import argparse
 import glob
 import os
 import re
-import shutil
 import signal
-import subprocess
 import sys
-import tempfile
 import threading
 import time
 from contextlib import ExitStack
@@ -24,8 +21,8 @@ from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 from std_msgs.msg import Empty, String
 
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         operation, pid_of, write_bag)
-from monitor_case import MonitorCase, Talker, publishers
+                         operation, ours, pid_of, run_program, talker, write_bag)
+from monitor_case import Talker, TrainedCase, publishers
 from self_awareness.msg import SelfAwareness
 
 Message = Tuple[float, str, str]
@@ -48,15 +45,10 @@ def driver() -> Process:
     return talker('driver', '/scan', 12.5)
 
 
-def talker(name: str, topic: str, rate: float) -> Process:
-    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
-                   '_rate:={}'.format(rate), '_variation:=0.3')
-
-
 def storm(**parameters: float) -> Process:
     """storm.cpp: it publishes much, on /storm0 and so on."""
-    return Process('rosrun', 'self_awareness', 'storm', '__name:=storm',
-                   *['_{}:={}'.format(key, value) for key, value in parameters.items()])
+    return ours('storm', '__name:=storm',
+                *['_{}:={}'.format(key, value) for key, value in parameters.items()])
 
 
 def resident_bytes(pid: int) -> int:
@@ -64,26 +56,11 @@ def resident_bytes(pid: int) -> int:
         return int(statm.read().split()[1]) * os.sysconf('SC_PAGESIZE')
 
 
-def recording(seed: int) -> List[Message]:
-    """Of normal operation; one topic has two publishers."""
-    return list(operation(
-        [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1), ('/second', '/scan', 0.1)],
-        120, seed))
-
-
 def bursts(burst: int, seed: int) -> List[Message]:
     """What storm() sends ten times a second, in bursts that take a millisecond."""
     return [(stamp + 0.001 * k / burst, source, topic)
             for stamp, source, topic in operation([('/storm', '/storm0', 0.1)], 120, seed)
             for k in range(burst)]
-
-
-def train(model: str, recordings: List[List[Message]]) -> None:
-    """Writes a model with limits; its recordings lie beside it."""
-    bags = [write_bag('{}_{}.bag'.format(model, number), messages)
-            for number, messages in enumerate(recordings)]
-    subprocess.run(['rosrun', 'self_awareness', 'train', *bags, '-o', model],
-                   check=True, stdout=subprocess.DEVNULL)
 
 
 class OtherString(String):
@@ -113,42 +90,26 @@ class MadeUpPublishers:
             getattr(master, method)('/made_up_{}'.format(number), name, *arguments)
 
 
-class ChaosTest(MonitorCase):
+class ChaosTest(TrainedCase):
     unloads = 0
     types = 0
-    trained = ''
+    components = [*TrainedCase.components, ('/second', '/scan', 0.1)]
 
     @classmethod
     def setUpClass(cls) -> None:
-        """Trains a model with limits, of the driver and of two nodes that run all the time.
-
-        One of them publishes on the driver's topic.
-        """
-        folder = tempfile.mkdtemp()
-        cls.addClassCleanup(shutil.rmtree, folder)
-        cls.trained = os.path.join(folder, 'trained')
-        train(cls.trained, [recording(seed) for seed in (1, 2)])
+        """Beside the driver, two nodes run all the time; one publishes on the driver's topic."""
+        super().setUpClass()
         for name, topic in (('base', '/odom'), ('second', '/scan')):
             cls.addClassCleanup(talker(name, topic, 10).stop)
 
     def judging_monitor(self, model: str = '', **parameters) -> Process:
-        """A monitor by the default detector, which says what it never saw in training."""
+        """One that settles within a second."""
         return self.monitor(model or self.trained, **dict(
             {'detector': 'evidence', 'unknown': 'warn', 'settle_time': 1.0, 'subscribe': 'all'},
             **parameters))
 
     def await_heard(self, listener: MonitorListener) -> None:
-        """Waits until the nodes are heard, and judged."""
-        for node in ('/driver', '/base', '/second'):
-            await_condition(node + ' is heard', lambda: (
-                float(listener.value(node, 'events a second') or 0) > 5), 30)
-        listener.await_settled()
-
-    def next_statuses(self, listener: MonitorListener, number: int) -> List[SelfAwareness]:
-        seen = len(listener.statuses)
-        await_condition('{} statuses'.format(number),
-                        lambda: len(listener.statuses) >= seen + number, 40)
-        return listener.statuses[seen:]
+        listener.await_heard('/driver', '/base', '/second')
 
     def await_said(self, listener: MonitorListener, task: str, part: str, level: int,
                    timeout: float = 30) -> DiagnosticStatus:
@@ -157,8 +118,7 @@ class ChaosTest(MonitorCase):
             None), timeout)
 
     def check_no_alarm(self, listener: MonitorListener) -> None:
-        self.assertEqual([alarm.message for alarm in listener.alarms
-                          if alarm.level == SelfAwareness.ERROR], [])
+        self.assertEqual(listener.errors, [])
 
     def check_alarm_names(self, listener: MonitorListener, victim: Process,
                           number: int = signal.SIGKILL) -> None:
@@ -182,8 +142,7 @@ class ChaosTest(MonitorCase):
             listener.await_settled()
             await_condition('all are heard', lambda: (
                 listener.value('monitor', 'publishers heard') == '4'), 20)
-            seen = len(listener.heartbeats)
-            await_condition('more polls', lambda: len(listener.heartbeats) > seen + 2, 20)
+            listener.await_heartbeats(3)
             self.assertTrue(monitor.running())
             self.check_no_alarm(listener)
             monitor.stop()  # what it logs comes when the buffer is emptied
@@ -199,13 +158,13 @@ class ChaosTest(MonitorCase):
         with driver(), self.judging_monitor(), MonitorListener() as listener:
             self.await_heard(listener)
             with self.judging_monitor(name='another'), \
-                    Process('rosrun', 'self_awareness', 'record_events', '__name:=third',
-                            '_subscribe:=all', '_min_space:=0',
-                            '_output:=' + self.path('log')), \
+                    ours('record_events', '__name:=third',
+                         '_subscribe:=all', '_min_space:=0',
+                         '_output:=' + self.path('log')), \
                     MonitorListener('/another') as another:
                 self.await_heard(another)
                 await_condition('the recorder has begun', lambda: publishers('/third/start'), 20)
-                self.next_statuses(listener, 30)
+                listener.next_statuses(30)
                 unknown = [each.message for each in listener.statuses + another.statuses
                            if each.unknown_events and not each.settling]
             self.assertEqual(unknown, [])
@@ -243,8 +202,8 @@ class ChaosTest(MonitorCase):
             for number in range(1000):
                 if stop.is_set():
                     return
-                with Process('rosrun', 'self_awareness', 'storm', '_seconds:=0.5',
-                             '__name:=newcomer_{}x'.format(number)), \
+                with ours('storm', '_seconds:=0.5',
+                          '__name:=newcomer_{}x'.format(number)), \
                         MadeUpPublishers(topics):
                     stop.wait(0.7)
 
@@ -255,8 +214,7 @@ class ChaosTest(MonitorCase):
             self.addCleanup(attack.join)
             self.addCleanup(stop.set)
             await_condition('they are there', lambda: publishers(topics[-1]), 20)
-            seen = len(listener.heartbeats)
-            await_condition('some time', lambda: len(listener.heartbeats) > seen + 2, 20)
+            listener.await_heartbeats(3)
             self.check_alarm_names(listener, victim)
 
     @again_if_disturbed
@@ -264,30 +222,15 @@ class ChaosTest(MonitorCase):
         name = 'n' * 1000  # and a slash
         with Talker('/a'), self.monitor(self.model(), subscribe='all') as monitor, \
                 MonitorListener() as listener, \
-                Process('rosrun', 'self_awareness', 'storm', '__name:=' + name, '_rate:=50'):
+                ours('storm', '__name:=' + name, '_rate:=50'):
             listener.await_settled()
             complaint = re.compile("'/nnn.* is too long; its messages are left out")
             await_condition('it is named', lambda: complaint.search(monitor.output), 30)
-            self.next_statuses(listener, 10)
+            listener.next_statuses(10)
             self.assertEqual(len(complaint.findall(monitor.output)), 1)
             self.check_no_alarm(listener)
 
     # Nodes
-
-    @again_if_disturbed
-    def test_a_node_that_is_stopped_killed_and_respawned(self) -> None:
-        with driver() as victim, self.judging_monitor(), MonitorListener() as listener:
-            self.await_heard(listener)
-            self.check_alarm_names(listener, victim, signal.SIGSTOP)
-            victim.send(signal.SIGCONT)
-            self.await_level(listener, SelfAwareness.OK)
-            self.check_alarm_names(listener, victim)
-            with driver():
-                self.await_level(listener, SelfAwareness.OK)
-
-    def await_level(self, listener: MonitorListener, level: int) -> None:
-        await_condition('level {}'.format(level),
-                        lambda: listener.statuses[-1].level == level, 30)
 
     @again_if_disturbed
     def test_a_type_of_the_same_name_with_another_md5_sum(self) -> None:
@@ -318,7 +261,7 @@ class ChaosTest(MonitorCase):
                 large.publish('x' * 64 * MEGABYTE)
             await_condition('all are heard', lambda: (
                 listener.value('monitor', 'publishers heard') == '5'), 40)
-            self.next_statuses(listener, 10)
+            listener.next_statuses(10)
             self.assertLess(resident_bytes(pid), before + 150 * MEGABYTE)
             self.check_no_alarm(listener)
 
@@ -330,7 +273,7 @@ class ChaosTest(MonitorCase):
             with storm(rate=20000, topics=20):
                 await_condition('they are heard', lambda: (
                     float(listener.value('monitor', 'events a second') or 0) > 18000), 40)
-                self.next_statuses(listener, 30)
+                listener.next_statuses(30)
                 self.check_no_alarm(listener)
                 self.check_alarm_names(listener, victim)
             self.assertTrue(monitor.running())
@@ -344,20 +287,23 @@ class ChaosTest(MonitorCase):
             self.await_heard(listener)
             with storm(rate=5000):
                 self.await_said(listener, 'monitor', OVERLOADED, DiagnosticStatus.WARN)
-                self.next_statuses(listener, 20)
+                listener.next_statuses(20)
                 self.check_no_alarm(listener)
-                self.check_alarm_names(listener, victim)
+                self.check_alarm_names(listener, victim, signal.SIGSTOP)
             self.assertGreater(int(listener.value('monitor', 'dropped messages') or 0), 0)
 
     @again_if_disturbed
     def test_what_a_queue_loses_is_no_fault_of_who_sent_it(self) -> None:
         burst = 30
         model = self.path('bursts')
-        train(model, [recording(seed) + bursts(burst, seed) for seed in (1, 2)])
+        run_program('train', '-o', model, *[
+            write_bag('{}_{}.bag'.format(model, seed),
+                      [*operation(self.components, 120, seed), *bursts(burst, seed)])
+            for seed in (1, 2)])
         with driver() as victim, storm(rate=10 * burst, burst=burst), \
                 self.judging_monitor(model=model, queue_size=1), MonitorListener() as listener:
             self.await_said(listener, 'monitor', OVERLOADED, DiagnosticStatus.WARN)
-            self.next_statuses(listener, 50)
+            listener.next_statuses(50)
             self.check_no_alarm(listener)
             self.check_alarm_names(listener, victim)
 
@@ -371,7 +317,7 @@ class ChaosTest(MonitorCase):
             monitor.send(signal.SIGCONT)
             self.await_said(listener, 'monitor', OVERLOADED + 'this program stood still',
                             DiagnosticStatus.WARN)
-            self.next_statuses(listener, 40)
+            listener.next_statuses(40)
             self.check_no_alarm(listener)
             victim.send(signal.SIGKILL)
             time.sleep(0.2)  # the last of its messages has come
@@ -401,7 +347,7 @@ class ChaosTest(MonitorCase):
                 await_condition('it is noticed', lambda: any(
                     s.settling for s in listener.statuses[seen:]), 20)
                 listener.await_settled()
-                self.next_statuses(listener, 10)
+                listener.next_statuses(10)
                 ahead = listener.statuses[-1].header.stamp.to_sec() - time.time()
                 self.assertAlmostEqual(ahead, int(hours) * 3600, delta=60)
                 self.check_no_alarm(listener)
@@ -457,7 +403,7 @@ class ChaosTest(MonitorCase):
             self.assertEqual((again.level, again.alarm, again.component),
                              (SelfAwareness.ERROR, alarm.alarm, '/driver'))
             # Longer than it settles, and than it holds an alarm whose cause is over.
-            self.next_statuses(listener, 50)
+            listener.next_statuses(50)
             self.assertEqual({(status.level, status.alarm)
                               for status in listener.statuses[statuses:]},
                              {(SelfAwareness.ERROR, alarm.alarm)})

@@ -7,8 +7,8 @@ import rospy
 import rostest
 from std_msgs.msg import String
 
-from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         operation, write_bag)
+from live_system import (MonitorListener, again_if_disturbed, await_condition, operation,
+                         talker, write_bag)
 from monitor_case import MonitorCase, Talker
 from self_awareness import Tuning
 from self_awareness.msg import SelfAwareness, Suspect
@@ -48,8 +48,7 @@ class ConnectionsTest(MonitorCase):
     @again_if_disturbed
     def test_who_does_not_subscribe_or_logs_an_error_is_named(self) -> None:
         model = self.trained()
-        camera = Process('rosrun', 'self_awareness', 'talker.py', '__name:=camera',
-                         '_output:=/image', '_rate:=10', '_variation:=0.3')
+        camera = talker('camera', '/image', 10)
         self.addCleanup(camera.stop)
         subscriber = rospy.Subscriber('/image', String, ignore)
         with Talker('/people'), \

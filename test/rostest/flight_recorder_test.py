@@ -16,21 +16,15 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         operation, write_bag)
-from monitor_case import MonitorCase, Talker
+                         run_program, talker)
+from monitor_case import Talker, TrainedCase
 from self_awareness.msg import SelfAwareness
 
 FILE = re.compile(r'; events in (/\S+/alarm_[-\d.]+\.bag)')
 LOAD = re.compile(r' \(load [\d.]+ on \d+ cores?\)')
 
 
-def talker(name: str, topic: str, rate: float) -> Process:
-    """A node whose periods vary as those of operation()."""
-    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
-                   '_rate:={}'.format(rate), '_variation:=0.3')
-
-
-class FlightRecorderTest(MonitorCase):
+class FlightRecorderTest(TrainedCase):
 
     def folder_of_files(self) -> str:
         return self.path('recorder')
@@ -38,15 +32,9 @@ class FlightRecorderTest(MonitorCase):
     def files(self, pattern: str = '*') -> List[str]:
         return sorted(glob.glob(os.path.join(self.folder_of_files(), pattern)))
 
-    def run_program(self, *command: str) -> str:
-        done = subprocess.run(['rosrun', 'self_awareness', *command], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout
-
     def score(self, path: str, *options: str) -> str:
-        return self.run_program('score', path, '--model', self.path('model'), '--unknown',
-                                'ignore', '--settle-time', '0.5', *options)
+        return run_program('score', path, '--model', self.path('model'), '--unknown', 'ignore',
+                           '--settle-time', '0.5', *options)
 
     def recording_monitor(self, model: str, detector: str = 'paper', **options: Any) -> Process:
         """A monitor with parameters of the recorder."""
@@ -57,15 +45,10 @@ class FlightRecorderTest(MonitorCase):
     @again_if_disturbed
     def test_a_killed_node_is_in_a_file_that_score_reads(self) -> None:
         after = 3
-        bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
-            [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)], 120, seed)) for seed in (1, 2)]
-        self.run_program('train', *bags, '-o', self.path('model'))
         with talker('driver', '/scan', 12.5) as victim, talker('base', '/odom', 10), \
                 self.recording_monitor(self.path('model'), 'evidence', after=after), \
                 MonitorListener() as listener:
-            await_condition('the victim is heard', lambda: (
-                float(listener.value('/driver', 'events a second') or 0) > 5), 20)
-            listener.await_settled()
+            listener.await_heard('/driver')
             victim.send(signal.SIGKILL)
             alarm = listener.await_alarm()
             found = FILE.search(alarm.message)
@@ -164,19 +147,6 @@ class FlightRecorderTest(MonitorCase):
         self.check_disk(full, lambda: subprocess.run(
             ['mount', '-o', 'remount,size=1m', folder], check=True), 'space')
 
-    @unittest.skipUnless(os.geteuid() == 0, 'only root may mount')
-    @again_if_disturbed
-    def test_a_read_only_disk(self) -> None:
-        folder = self.folder_of_files()
-
-        def read_only() -> None:
-            os.mkdir(folder)
-            subprocess.run(['mount', '-t', 'tmpfs', '-o', 'ro', 'tmpfs', folder], check=True)
-            self.addCleanup(lambda: subprocess.run(['umount', folder], check=True))
-
-        self.check_disk(read_only, lambda: subprocess.run(
-            ['mount', '-o', 'remount,rw', folder], check=True), 'Read-only')
-
     def check_disk(self, spoil: Callable, mend: Callable, reason: str) -> None:
         spoil()
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
@@ -190,9 +160,7 @@ class FlightRecorderTest(MonitorCase):
             response = self.call('/self_awareness/dump')
             self.assertFalse(response.success)
             self.assertIn(reason, response.message)
-            seen = len(listener.statuses)
-            await_condition('the monitor goes on', lambda: (
-                len(listener.statuses) > seen + 10), 20)
+            listener.next_statuses(10)
             mend()
             await_condition('both files', lambda: len(self.files('dump_*.bag')) == 2, 30)
             await_condition('all is well', lambda: (

@@ -2,56 +2,36 @@
 """All nodes of one computer fall silent: the monitor names the computer."""
 
 import signal
-import subprocess
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         operation, write_bag)
-from monitor_case import MonitorCase
+from live_system import MonitorListener, again_if_disturbed, await_condition, talker
+from monitor_case import TrainedCase
 from self_awareness.msg import SelfAwareness
 
-NODES = (('/laser', '/scan', 0.08), ('/imu', '/imu/data', 0.1), ('/camera', '/image', 0.1),
-         ('/faces', '/people', 0.1))
-BASE = '127.0.0.2'
-"""Where the first two of them run. All of 127.0.0.0/8 is this computer."""
+NODES = [('/laser', '/scan', 0.08), ('/imu', '/imu/data', 0.1), ('/camera', '/image', 0.1),
+         ('/faces', '/people', 0.1)]
+BASE, HERE = '127.0.0.2', '127.0.0.1'
+"""Where the first two of them run, and the others. All of 127.0.0.0/8 is this computer."""
 SAID = 'everything on host {} fell silent: 2 nodes'.format(BASE)
 
 
-class HostsTest(MonitorCase):
+class HostsTest(TrainedCase):
 
-    def trained(self) -> str:
-        bags = [write_bag(self.path('{}.bag'.format(seed)), operation(NODES, 120, seed))
-                for seed in (1, 2)]
-        subprocess.run(['rosrun', 'self_awareness', 'train', *bags, '-o', self.path('model')],
-                       check=True, stdout=subprocess.DEVNULL)
-        return self.path('model')
-
-    def start(self, node: str, topic: str, period: float, address: str) -> Process:
-        process = Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + node[1:],
-                          '_output:=' + topic, '_rate:={}'.format(1 / period), '_variation:=0.3',
-                          env={'ROS_IP': address})
-        self.addCleanup(process.stop)
-        return process
-
-    def await_heard(self, listener: MonitorListener, name: str) -> None:
-        await_condition(name + ' is heard', lambda: (
-            float(listener.value(name, 'events a second') or 0) > 5), 30)
+    components = NODES
 
     @again_if_disturbed
     def test_the_computer_is_the_finding(self) -> None:
-        model = self.trained()
-        base = [self.start(*node, BASE) for node in NODES[:2]]
-        for node in NODES[2:]:
-            self.start(*node, '127.0.0.1')
-        with self.monitor(model, detector='evidence', settle_time=1.0, subscribe='all'), \
+        nodes = [talker(name[1:], topic, 1 / period, env={'ROS_IP': address})
+                 for (name, topic, period), address in zip(NODES, (BASE, BASE, HERE, HERE))]
+        for process in nodes:
+            self.addCleanup(process.stop)
+        with self.trained_monitor(unknown='ignore', settle_time=1.0), \
                 MonitorListener() as listener:
-            for name, _, _ in NODES:
-                self.await_heard(listener, name)
-            listener.await_settled()
-            for process in base:
+            listener.await_heard(*(name for name, _, _ in NODES))
+            for process in nodes[:2]:
                 process.send(signal.SIGSTOP)  # as a computer that lost its network
             alarm = await_condition('the computer is named', lambda: next(
                 (alarm for alarm in listener.alarms

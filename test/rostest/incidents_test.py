@@ -4,83 +4,49 @@
 import json
 import os
 import signal
-import subprocess
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         operation, write_bag)
-from monitor_case import MonitorCase
+                         run_program, talker)
+from monitor_case import TrainedCase
 from self_awareness.msg import Incident, Incidents, SelfAwareness
 from self_awareness.srv import Maintenance, Mute, MuteResponse
 
-NODE, NODELET = '/self_awareness', '/watch'
-
-
-def talker(name: str, topic: str, rate: float) -> Process:
-    """A node whose periods vary as those of operation()."""
-    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
-                   '_rate:={}'.format(rate), '_variation:=0.3')
+NODE = '/self_awareness'
 
 
 def driver() -> Process:
     return talker('driver', '/scan', 12.5)
 
 
-def run_program(*command: str) -> str:
-    done = subprocess.run(['rosrun', 'self_awareness', *command], stdout=subprocess.PIPE,
-                          stderr=subprocess.PIPE, text=True)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-class IncidentsTest(MonitorCase):
+class IncidentsTest(TrainedCase):
 
     def setUp(self) -> None:
         super().setUp()
-        self.latest: Dict[str, List[Incident]] = {}
-        for name in (NODE, NODELET):
-            subscriber = rospy.Subscriber(
-                name + '/incidents', Incidents,
-                lambda message, name=name: self.latest.update({name: message.incidents}))
-            self.addCleanup(subscriber.unregister)
-        bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
-            [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)], 120, seed)) for seed in (1, 2)]
-        run_program('train', *bags, '-o', self.path('model'))
+        self.latest: Optional[List[Incident]] = None
+        subscriber = rospy.Subscriber(NODE + '/incidents', Incidents, lambda message: setattr(
+            self, 'latest', message.incidents))
+        self.addCleanup(subscriber.unregister)
 
-    def trained_monitor(self) -> Process:
-        options: Dict[str, Any] = {'recorder/after': 1}
-        return self.monitor(self.path('model'), detector='evidence', **options)
+    def monitored(self) -> Process:
+        return self.trained_monitor(unknown='ignore', subscribe='used', **{'recorder/after': 1})
 
-    def nodelet(self) -> Process:
-        rospy.set_param(NODELET, {'model': self.path('model'), 'settle_time': 0.5,
-                                  'unknown': 'ignore', 'poll_interval': 0.1,
-                                  'recorder': {'directory': self.path('other')}})
-        self.addCleanup(rospy.delete_param, NODELET)
-        return Process('rosrun', 'nodelet', 'nodelet', 'standalone',
-                       'self_awareness/SelfAwareness', '__name:=' + NODELET[1:])
-
-    def of_driver(self, name: str = NODE) -> List[Incident]:
-        return [each for each in self.latest.get(name, []) if each.component == '/driver'
+    def of_driver(self) -> List[Incident]:
+        return [each for each in self.latest or [] if each.component == '/driver'
                 and each.level == SelfAwareness.ERROR]
 
-    def await_incident(self, what: str, name: str = NODE, **fields: Any) -> Incident:
+    def await_incident(self, what: str, **fields: Any) -> Incident:
         """The only incident of the driver, once it is so."""
         def found() -> bool:
-            of = self.of_driver(name)
+            of = self.of_driver()
             return len(of) == 1 and all(getattr(of[0], field) == value
                                         for field, value in fields.items())
         await_condition(what, found, 40)
-        return self.of_driver(name)[0]
-
-    def await_heard(self, listener: MonitorListener) -> None:
-        for node in ('/driver', '/base'):
-            await_condition(node + ' is heard', lambda: (
-                float(listener.value(node, 'events a second') or 0) > 5), 30)
-        listener.await_settled()
+        return self.of_driver()[0]
 
     def listed(self, *options: str) -> List[Dict[str, Any]]:
         return json.loads(run_program('incidents', '--json', '--file',
@@ -89,10 +55,10 @@ class IncidentsTest(MonitorCase):
     @again_if_disturbed
     def test_an_incident_is_opened_repeated_and_over_and_outlives_the_monitor(self) -> None:
         with talker('base', '/odom', 10):
-            with self.trained_monitor() as monitor, MonitorListener() as listener:
-                await_condition('no incident yet', lambda: self.latest.get(NODE) == [], 20)
+            with self.monitored() as monitor, MonitorListener() as listener:
+                await_condition('no incident yet', lambda: self.latest == [], 20)
                 with driver() as victim:
-                    self.await_heard(listener)
+                    listener.await_heard('/driver', '/base')
                     victim.send(signal.SIGKILL)
                     alarm = listener.await_alarm()
                     opened = self.await_incident('it is opened', over=False)
@@ -102,7 +68,7 @@ class IncidentsTest(MonitorCase):
                 with driver() as victim:
                     over = self.await_incident('it is over', over=True)
                     self.assertGreater(over.ended, over.opened)
-                    self.await_heard(listener)
+                    listener.await_heard('/driver', '/base')
                     victim.send(signal.SIGKILL)
                     again = self.await_incident('it is the same again', over=False, alarms=2)
                 self.assertEqual(again.id, opened.id)
@@ -115,8 +81,8 @@ class IncidentsTest(MonitorCase):
             kept, = [each for each in self.listed('--component', '/driver')
                      if each['level'] == 'ERROR']
             self.assertEqual((kept['id'], kept['over']), (opened.id, False))
-            self.latest.clear()
-            with self.trained_monitor(), MonitorListener() as listener:
+            self.latest = None
+            with self.monitored(), MonitorListener() as listener:
                 stands = self.await_incident('it stands again', over=False)
                 self.assertEqual((stands.id, stands.alarms), (opened.id, 2))
                 self.assertEqual(stands.recording, opened.recording)
@@ -129,48 +95,11 @@ class IncidentsTest(MonitorCase):
             self.assertIn('score {} --model {} --report'.format(
                 opened.recording, self.path('model')), shown)
 
-    @again_if_disturbed
-    def test_what_stood_is_unknown_since_the_monitor_ended_if_another_model_judges(self) -> None:
-        with talker('base', '/odom', 10):
-            with self.trained_monitor() as monitor, MonitorListener() as listener:
-                with driver() as victim:
-                    self.await_heard(listener)
-                    victim.send(signal.SIGKILL)
-                    alarm = listener.await_alarm()
-                self.await_incident('it is opened', over=False)
-                monitor.send(signal.SIGINT)
-                monitor.wait(20)
-            kept, = [each for each in self.listed('--component', '/driver')
-                     if each['level'] == 'ERROR']
-            self.assertEqual((kept['over'], kept['unknown']), (True, True))
-            self.assertGreater(kept['ended_ns'], kept['opened_ns'])
-            run_program('train', self.path('1.bag'), '-o', self.path('model'))
-            self.latest.clear()
-            with self.trained_monitor(), MonitorListener() as listener:
-                self.await_incident('it is unknown', over=True, unknown=True, id=alarm.alarm)
-                listener.await_settled()
-                self.assertNotIn(alarm.alarm, [each.alarm for each in listener.alarms])
-
-    @again_if_disturbed
-    def test_a_nodelet_and_a_node_have_their_own(self) -> None:
-        with talker('base', '/odom', 10), self.trained_monitor(), self.nodelet(), \
-                MonitorListener() as listener, MonitorListener(NODELET) as other, \
-                driver() as victim:
-            self.await_heard(listener)
-            self.await_heard(other)
-            victim.send(signal.SIGKILL)
-            of_node = self.await_incident('that of the node')
-            of_nodelet = self.await_incident('that of the nodelet', NODELET)
-            self.assertTrue(of_node.recording.startswith(self.path('recorder')))
-            self.assertTrue(of_nodelet.recording.startswith(self.path('other')))
-            await_condition('its file', lambda: os.path.exists(
-                self.path('other/watch.incidents')), 20)
-
     # What an operator mutes
 
-    def mute(self, name: str = NODE, **what: Any) -> MuteResponse:
-        rospy.wait_for_service(name + '/mute', 20)
-        return rospy.ServiceProxy(name + '/mute', Mute)(**what)
+    def mute(self, **what: Any) -> MuteResponse:
+        rospy.wait_for_service(NODE + '/mute', 20)
+        return rospy.ServiceProxy(NODE + '/mute', Mute)(**what)
 
     def await_level(self, listener: MonitorListener, level: int, words: str) -> None:
         """Waits for a status of the whole, from now on."""
@@ -181,10 +110,10 @@ class IncidentsTest(MonitorCase):
 
     @again_if_disturbed
     def test_what_is_muted_is_judged_and_told_when_the_mute_ends(self) -> None:
-        with talker('base', '/odom', 10), self.trained_monitor() as monitor, \
+        with talker('base', '/odom', 10), self.monitored() as monitor, \
                 MonitorListener() as listener, driver() as victim:
-            self.await_heard(listener)
-            said = self.mute(component='/driv*', duration=30.0)
+            listener.await_heard('/driver', '/base')
+            said = self.mute(component='/driv*', duration=15.0)
             self.assertTrue(said.success, said.message)
             self.assertRegex(said.message, r'not told until \d+-.* UTC: /driv\*')
             victim.send(signal.SIGKILL)
@@ -204,10 +133,10 @@ class IncidentsTest(MonitorCase):
 
     @again_if_disturbed
     def test_a_mute_ends_with_what_it_mutes_or_is_taken_back(self) -> None:
-        with talker('base', '/odom', 10), self.trained_monitor() as monitor, \
+        with talker('base', '/odom', 10), self.monitored() as monitor, \
                 MonitorListener() as listener:
             with driver() as victim:
-                self.await_heard(listener)
+                listener.await_heard('/driver', '/base')
                 self.assertTrue(self.mute(topic='/scan', duration=600.0, until_over=True).success)
                 victim.send(signal.SIGKILL)
                 listener.await_alarm()
@@ -215,7 +144,7 @@ class IncidentsTest(MonitorCase):
             with driver() as victim:
                 await_condition('it is over', lambda: (
                     'mute ended, since all is normal again: /scan; ' in monitor.output), 80)
-                self.await_heard(listener)
+                listener.await_heard('/driver', '/base')
                 self.assertTrue(self.mute(component='*', duration=600.0).success)
                 victim.send(signal.SIGKILL)
                 listener.await_alarm()
@@ -228,7 +157,7 @@ class IncidentsTest(MonitorCase):
 
     @again_if_disturbed
     def test_a_mute_of_nothing_or_for_ever_is_refused(self) -> None:
-        with self.nodelet():
+        with self.monitored():
             refused: List[Tuple[Dict[str, Any], str]] = [
                 ({'duration': 5.0}, 'name a component, a topic or a kind'),
                 ({'component': '/a'}, '/a is not muted'),
@@ -236,12 +165,12 @@ class IncidentsTest(MonitorCase):
                 ({'component': '/a', 'duration': float('nan')}, 'from 1 to'),
                 ({'kind': 'odd', 'duration': 5.0}, 'kind: odd is not a kind')]
             for what, why in refused:
-                said = self.mute(NODELET, **what)
+                said = self.mute(**what)
                 self.assertFalse(said.success)
                 self.assertIn(why, said.message)
             # How many it takes depends on how long they take.
             await_condition('further calls are refused', lambda: 'too many calls' in self.mute(
-                NODELET, component='/a', duration=5.0).message, 20)
+                component='/a', duration=5.0).message, 20)
 
 
 if __name__ == '__main__':

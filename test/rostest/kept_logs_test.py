@@ -1,17 +1,15 @@
 #!/usr/bin/python3
-"""With ~learn_more, what was normal is kept beside the model; nothing else is."""
+"""With ~learn_more, what was normal is kept beside the model, but for maintenance."""
 
 import glob
-import subprocess
 import time
 from typing import List
 
 import rospy
 import rostest
 
-from live_system import MonitorListener, await_condition, again_if_disturbed
+from live_system import MonitorListener, again_if_disturbed, await_condition, run_program
 from monitor_case import MonitorCase, Talker
-from self_awareness.msg import SelfAwareness
 from self_awareness.srv import Maintenance
 
 LONGER_S = 12.0  # than the shortest stretch that is kept
@@ -19,11 +17,11 @@ LONGER_S = 12.0  # than the shortest stretch that is kept
 
 class KeptLogsTest(MonitorCase):
 
-    def run_monitor(self, learn_more: str, disturb=lambda talker: None) -> List[str]:
+    def run_monitor(self, disturb=lambda talker: None) -> List[str]:
         """Lets a monitor listen for a while, and ends it; returns what it has kept."""
         model = self.model()
         with Talker('/a') as talker, MonitorListener() as listener:
-            with self.monitor(model, learn_more=learn_more):
+            with self.monitor(model, learn_more='true'):
                 listener.await_settled()
                 begin = time.monotonic()
                 self.listener = listener
@@ -34,22 +32,13 @@ class KeptLogsTest(MonitorCase):
 
     @again_if_disturbed
     def test_what_was_normal_is_kept_and_read_by_the_programs(self) -> None:
-        kept = self.run_monitor('true')
+        kept = self.run_monitor()
         self.assertEqual(len(kept), 1, kept)
         self.assertRegex(kept[0], r'/model\.kept/normal_[-\d]+\.\d{3}\.bag$')
-        said = subprocess.run(['rosrun', 'self_awareness', 'info', kept[0]], check=True,
-                              stdout=subprocess.PIPE, universal_newlines=True).stdout
+        said = run_program('info', kept[0])
         self.assertIn('/a std_msgs/String', said)
         self.assertIn('robot started', said)
         self.assertIsNotNone(self.listener.value('monitor', 'logs kept to learn from'))
-
-    @again_if_disturbed
-    def test_an_alarm_is_not_kept(self) -> None:
-        def alarm(talker: Talker) -> None:
-            talker.stop()
-            self.assertEqual(self.listener.await_alarm().level, SelfAwareness.ERROR)
-
-        self.assertEqual(self.run_monitor('true', alarm), [])
 
     @again_if_disturbed
     def test_maintenance_is_not_kept(self) -> None:
@@ -57,12 +46,7 @@ class KeptLogsTest(MonitorCase):
             rospy.wait_for_service('/self_awareness/maintenance', 20)
             rospy.ServiceProxy('/self_awareness/maintenance', Maintenance)(duration=60.0)
 
-        self.assertEqual(self.run_monitor('true', maintain), [])
-
-    @again_if_disturbed
-    def test_nothing_is_kept_unless_asked(self) -> None:
-        self.assertEqual(self.run_monitor('false'), [])
-        self.assertIsNone(self.listener.value('monitor', 'logs kept to learn from'))
+        self.assertEqual(self.run_monitor(maintain), [])
 
 
 if __name__ == '__main__':

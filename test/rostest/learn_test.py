@@ -19,7 +19,7 @@ from self_awareness import TrainedModel
 from self_awareness.msg import SelfAwareness
 
 # 50 s are the least to find limits on, and a third of the recordings is for that.
-HOURS = 0.06
+HOURS = 0.05
 LEARNING_S = 500
 FINISH = '/self_awareness/finish'
 
@@ -27,7 +27,7 @@ FINISH = '/self_awareness/finish'
 def recorded(listener: MonitorListener) -> float:
     """How much the last status says to be recorded [min]; NaN: there is none yet."""
     statuses = listener.diagnostics('communication')
-    match = re.match(r'learning: ([0-9.]+) min of 3\.6 min', statuses[-1].message
+    match = re.match(r'learning: ([0-9.]+) min of 3\.0 min', statuses[-1].message
                      ) if statuses else None
     return float(match.group(1)) if match else float('nan')
 

@@ -20,11 +20,10 @@ from std_msgs.msg import Float64, String
 from visualization_msgs.msg import Marker
 
 import self_awareness
-from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         pid_of)
-from monitor_case import MonitorCase, Talker, forget_parameters, subscribers
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition, ours,
+                         pid_of, talker)
+from monitor_case import MonitorCase, Talker, subscribers
 from self_awareness.msg import SelfAwareness
-from top_test import top
 
 
 def cpu_s(pid: int) -> float:
@@ -45,9 +44,7 @@ class LiveRulesTest(MonitorCase):
                 with self.monitor(self.model(), subscribe=policy), MonitorListener() as listener:
                     listener.await_settled()
                     # Two more polls of the master, and it would have been.
-                    seen = len(listener.diagnostics('monitor'))
-                    await_condition('two heartbeats', lambda: len(
-                        listener.diagnostics('monitor')) > seen + 1, 20)
+                    listener.await_heartbeats(2)
                     self.assertEqual(lazy.publisher.get_num_connections() > 0, woken, policy)
                 await_condition('the monitor is gone',
                                 lambda: '/self_awareness' not in subscribers('/a'), 20)
@@ -77,8 +74,7 @@ class LiveRulesTest(MonitorCase):
             latching.publish('published now')
             await_condition('the second message is an event', lambda: any(
                 s.unknown_events for s in listener.statuses), 20)
-            seen = len(listener.statuses)
-            await_condition('another second', lambda: len(listener.statuses) > seen + 10, 20)
+            listener.next_statuses(10)
             self.assertEqual(sum(s.unknown_events for s in listener.statuses), 1)
 
     @again_if_disturbed
@@ -96,19 +92,16 @@ class LiveRulesTest(MonitorCase):
                 self.assertIn('never seen in training', suspect.reason)
 
     @again_if_disturbed
-    def test_unknown_events_are_a_suspicion_or_an_alarm(self) -> None:
-        for policy, level in (('ignore', SelfAwareness.OK), ('warn', SelfAwareness.WARN),
-                              ('error', SelfAwareness.ERROR)):
-            with self.subTest(policy), Talker('/a'), \
-                    self.monitor(self.model(), unknown=policy, subscribe='all'), \
-                    MonitorListener() as listener:
-                listener.await_settled()
-                with Talker('/joystick'):
-                    status = await_condition('the joystick is judged', lambda: next(
-                        (s for s in listener.statuses if s.unknown_events and not s.settling),
-                        None), 20)
-                self.assertEqual(status.level, level, status.message)
-                self.assertEqual('unknown events' in status.evidence, policy != 'ignore')
+    def test_unknown_events_may_be_an_alarm(self) -> None:
+        with Talker('/a'), self.monitor(self.model(), unknown='error', subscribe='all'), \
+                MonitorListener() as listener:
+            listener.await_settled()
+            with Talker('/joystick'):
+                status = await_condition('the joystick is judged', lambda: next(
+                    (s for s in listener.statuses if s.unknown_events and not s.settling),
+                    None), 20)
+            self.assertEqual(status.level, SelfAwareness.ERROR, status.message)
+            self.assertIn('unknown events', status.evidence)
 
     @again_if_disturbed
     def test_what_is_sent_by_hand_is_a_suspicion_that_names_rostopic(self) -> None:
@@ -178,25 +171,16 @@ class LiveRulesTest(MonitorCase):
         state = rospy.Publisher('/state', String, latch=True, queue_size=1)
         self.addCleanup(state.unregister)
         state.publish('DRIVING')
-        with Process('rosrun', 'self_awareness', 'talker.py', '__name:=imu', '_output:=/imu',
-                     '_rate:=10'), \
-                Process('rosrun', 'self_awareness', 'talker.py', '__name:=planner',
-                        '_output:=/plan', '_rate:=10') as planner, \
+        with talker('imu', '/imu', 10), talker('planner', '/plan', 10) as planner, \
                 self.monitor(self.mode_model(), detector='evidence', unknown='warn',
                              settle_time=1), MonitorListener() as listener:
-            listener.await_settled()
-            await_condition('both are heard', lambda: all(
-                float(listener.value(name, 'events a second') or 0) > 5
-                for name in ('/planner', '/imu')), 30)
+            listener.await_heard('/planner', '/imu')
             self.await_mode(listener, r'DRIVING \(/state\), for [0-9]+ s')
             seen = len(listener.statuses)
             state.publish('LOST')
-            with top() as terminal:
-                self.await_mode(listener, r'LOST \(/state\), for [0-9]+ s, not seen in training')
-                terminal.await_text('mode: LOST (/state), for ')
-                state.publish('DRIVING')
-                self.await_mode(listener, r'DRIVING \(/state\), for [0-9]+ s')
-                terminal.await_text('mode: DRIVING (/state), for ')
+            self.await_mode(listener, r'LOST \(/state\), for [0-9]+ s, not seen in training')
+            state.publish('DRIVING')
+            self.await_mode(listener, r'DRIVING \(/state\), for [0-9]+ s')
             await_condition('both are told', lambda: sum(
                 s.events for s in listener.statuses[seen:]) > 40, 20)
             self.call('/self_awareness/reset')  # the mode lasts
@@ -218,8 +202,7 @@ class LiveRulesTest(MonitorCase):
         with self.monitor(self.path('anonymous')), MonitorListener() as listener:
             for number in ('1795206538727453261', '4242_1795206538727'):
                 heard = len(listener.diagnostics('/talker'))
-                with Process('rosrun', 'self_awareness', 'talker.py',
-                             '__name:=talker_' + number, '_output:=/scan', '_rate:=10'):
+                with talker('talker_' + number, '/scan', 10):
                     await_condition(number + ' is heard', lambda: any(
                         status.message == 'heard' and float(status.values[-1].value) > 5
                         for status in listener.diagnostics('/talker')[heard:]), 30)
@@ -277,7 +260,8 @@ class LiveRulesTest(MonitorCase):
     @again_if_disturbed
     def test_the_processor_time_is_that_of_the_whole_process(self) -> None:
         topics = ['/topic{}'.format(number) for number in range(25)]
-        with ExitStack() as busy, self.monitor(self.model(topics=topics)), \
+        with ExitStack() as busy, \
+                self.monitor(self.model(topics=topics), diagnostic_period=0.5), \
                 MonitorListener() as listener:
             for topic in topics:
                 busy.enter_context(Talker(topic))
@@ -286,14 +270,12 @@ class LiveRulesTest(MonitorCase):
 
             def await_report() -> Tuple[float, float]:
                 """Time and processor time [s] right after the next report."""
-                seen = len(listener.heartbeats)
-                await_condition('a report', lambda: len(listener.heartbeats) > seen, 20)
+                listener.await_heartbeats(1)
                 return time.monotonic(), cpu_s(pid)
 
             begin, spent_before = await_report()
             first = len(listener.diagnostics('monitor'))
-            await_condition('8 reports', lambda: (
-                len(listener.diagnostics('monitor')) > first + 8), 30)
+            listener.await_heartbeats(8)
             end, spent = await_report()
             reports = listener.diagnostics('monitor')[first:]
             told = statistics.mean(float(pair.value) for report in reports
@@ -304,24 +286,12 @@ class LiveRulesTest(MonitorCase):
             self.assertAlmostEqual(told, share, delta=0.3 * share)
 
     @again_if_disturbed
-    def test_the_alarm_is_latched(self) -> None:
-        with self.monitor(self.model(), hold_time=600):
-            with Talker('/a'), MonitorListener() as listener:
-                listener.await_settled()
-            with MonitorListener() as listener:
-                listener.await_alarm()
-            with MonitorListener() as late:
-                await_condition('the alarm that was', lambda: late.alarms, 20)
-
-    @again_if_disturbed
     def test_not_calibrated_is_said_and_never_alarms(self) -> None:
         with self.monitor(self.model(threshold=None)), MonitorListener() as listener:
             with Talker('/a'):
                 listener.await_settled()
             await_condition('silence', lambda: listener.statuses[-1].events == 0, 20)
-            seen = len(listener.statuses)
-            await_condition('20 windows of silence',
-                            lambda: len(listener.statuses) > seen + 20, 20)
+            listener.next_statuses(20)
             self.assertEqual({s.level for s in listener.statuses}, {SelfAwareness.OK})
             self.assertEqual(listener.alarms, [])
             self.assertIn('not calibrated', listener.statuses[-1].message)
@@ -371,8 +341,7 @@ class LiveRulesTest(MonitorCase):
             os.remove(self.path('later'))
             os.mkfifo(self.path('later'))
             self.assertIn('not a file', self.call('/self_awareness/reload').message)
-            seen = len(listener.statuses)
-            await_condition('it goes on', lambda: len(listener.statuses) > seen + 5, 20)
+            listener.next_statuses(5)
 
     def test_bad_parameters_are_named(self) -> None:
         bad: Dict[str, tuple] = {
@@ -384,12 +353,14 @@ class LiveRulesTest(MonitorCase):
             'hardware_id': ('5',), 'recorder/memory': ('1e12',), 'optional': ('/a', '5'),
             'diagnostic_bytes': ('99',)}
         model = self.model()
-        for name, values in bad.items():
-            for value in values:
-                with self.monitor(model, **{name: value}) as monitor:
-                    self.assertEqual(monitor.wait(20), 1, '{}={}'.format(name, value))
-                    self.assertRegex(monitor.output, name + ' is .*, it must be ', value)
-                forget_parameters()
+        cases = [(name, value) for name, values in bad.items() for value in values]
+        with ExitStack() as all_at_once:
+            monitors = [all_at_once.enter_context(self.monitor(
+                model, 'bad_{}'.format(number), **{name: value}))
+                for number, (name, value) in enumerate(cases)]
+            for (name, value), monitor in zip(cases, monitors):
+                self.assertEqual(monitor.wait(40), 1, '{}={}'.format(name, value))
+                self.assertRegex(monitor.output, name + ' is .*, it must be ', value)
 
     def test_a_bad_parameter_of_a_nodelet_is_named(self) -> None:
         with Process('rosrun', 'nodelet', 'nodelet', 'standalone', 'self_awareness/SelfAwareness',
@@ -402,7 +373,7 @@ class LiveRulesTest(MonitorCase):
                             'config', 'self_awareness.yaml')
         with open(path) as file:
             configuration = yaml.safe_load(file)
-        with Process('rosrun', 'self_awareness', 'self_awareness_node') as monitor:
+        with ours('self_awareness_node') as monitor:
             await_condition('the monitor serves', lambda: rosservice.get_service_node(
                 '/self_awareness/reload'), 20)
             monitor.stop()  # the log comes when the buffer is emptied

@@ -20,6 +20,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import String
 
 import self_awareness
+from self_awareness.learning.programs import executable
 from self_awareness.msg import SelfAwareness
 from self_awareness.status_names import task_of
 
@@ -173,6 +174,33 @@ class Process:
         return True
 
 
+@functools.lru_cache(maxsize=None)
+def path_of(program: str) -> str:
+    """Where a program or node of this package is; `rosrun` looks for it each time."""
+    return executable(program)
+
+
+def ours(program: str, *arguments: str, env: Optional[Dict[str, str]] = None) -> Process:
+    """A program or node of this package."""
+    return Process(path_of(program), *arguments, env=env)
+
+
+def talker(name: str, topic: str, rate: float, *arguments: str,
+           env: Optional[Dict[str, str]] = None) -> Process:
+    """talker.cpp: a node whose periods vary as those of operation()."""
+    return ours('talker', '__name:=' + name, '_output:=' + topic, '_rate:={}'.format(rate),
+                '_variation:=0.3', *arguments, env=env)
+
+
+def run_program(program: str, *arguments: str) -> str:
+    """What a program of this package prints; AssertionError if it fails."""
+    done = subprocess.run((path_of(program), *arguments), stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True)
+    if done.returncode != 0:
+        raise AssertionError('{}: {}'.format(program, done.stderr))
+    return done.stdout
+
+
 class Waiting:
     """How long processes have waited for a processor since this was made; 0 without PRESSURE."""
 
@@ -245,6 +273,11 @@ class MonitorListener:
             return list(self._alarms)
 
     @property
+    def errors(self) -> List[str]:
+        """What alarms said."""
+        return [alarm.message for alarm in self.alarms if alarm.level == SelfAwareness.ERROR]
+
+    @property
     def heartbeats(self) -> List[float]:
         """When the monitor's diagnostics came [s of time.monotonic()]."""
         with self._lock:
@@ -261,6 +294,26 @@ class MonitorListener:
         for status in reversed(self.diagnostics(task)):
             return next((pair.value for pair in status.values if pair.key == key), None)
         return None
+
+    def next_statuses(self, number: int) -> List[SelfAwareness]:
+        """Waits for so many more; returns them."""
+        seen = len(self.statuses)
+        await_condition('{} statuses'.format(number),
+                        lambda: len(self.statuses) >= seen + number, 40)
+        return self.statuses[seen:]
+
+    def await_heartbeats(self, number: int) -> None:
+        """Waits until the monitor's diagnostics have come so many times more."""
+        seen = len(self.heartbeats)
+        await_condition('{} heartbeats'.format(number),
+                        lambda: len(self.heartbeats) >= seen + number, 40)
+
+    def await_heard(self, *nodes: str) -> None:
+        """Waits until nodes are heard, and judged."""
+        for node in nodes:
+            await_condition(node + ' is heard', lambda: (
+                float(self.value(node, 'events a second') or 0) > 5), 30)
+        self.await_settled()
 
     def await_settled(self, timeout: float = 40) -> SelfAwareness:
         """Waits until the monitor has settled after what has happened so far."""

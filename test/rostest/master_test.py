@@ -18,7 +18,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import (Process, again_if_disturbed, await_condition, make_model, operation,
-                         write_bag)
+                         path_of, write_bag)
 from self_awareness import EncodingRules, read_events
 from self_awareness.msg import SelfAwareness
 
@@ -108,22 +108,22 @@ class MasterTest(unittest.TestCase):
 
     def start_monitor(self, name: str = 'self_awareness') -> Process:
         # A busy machine may hold messages back for some windows, so an alarm needs a second.
-        return self.start('rosrun', 'self_awareness', 'self_awareness_node',
-                          '__name:=' + name, '_model:=' + self.model, '_detector:=paper',
+        return self.start(path_of('self_awareness_node'), '__name:=' + name,
+                          '_model:=' + self.model, '_detector:=paper',
                           '_unknown:=ignore', '_poll_interval:=0.2', '_settle_time:=1.0',
                           '_alarm_windows:=10', '_alarm_of:=15', '_hold_time:=1.0',
                           '_recorder/directory:=' + tempfile.mkdtemp(dir=self.folder))
 
     def start_recorder(self) -> Process:
-        return self.start('rosrun', 'self_awareness', 'record_events', '__name:=recorder_1',
+        return self.start(path_of('record_events'), '__name:=recorder_1',
                           '_min_space:=0', '_subscribe:=all',
                           '_output:=' + os.path.join(self.folder, 'log'))
 
     def start_component(self, name: str) -> Process:
         topic, period = next((topic, period) for source, topic, period in COMPONENTS
                              if source == name)
-        return self.start(sys.executable, script('talker.py'), '__name:=' + name[1:],
-                          '_output:=' + topic, '_rate:={}'.format(1 / period))
+        return self.start(path_of('talker'), '__name:=' + name[1:], '_output:=' + topic,
+                          '_rate:={}'.format(1 / period))
 
     def start_listener(self) -> Listener:
         return self.keep(Listener(sys.executable, script('listener.py'), env=self.environment))
@@ -222,8 +222,7 @@ class MasterTest(unittest.TestCase):
         for hangs in (True, False):
             master = self.start_master()
             nodes = [self.start_monitor(), self.start_recorder()]
-            learner = self.start('rosrun', 'self_awareness', 'learn', '--subscribe', 'all',
-                                 '__name:=learner',
+            learner = self.start(path_of('learn'), '--subscribe', 'all', '__name:=learner',
                                  '_model:=' + os.path.join(self.folder, 'learned'))
             listener = self.start_listener()
             self.start_component('/talker')

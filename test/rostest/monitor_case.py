@@ -5,7 +5,7 @@ import shutil
 import tempfile
 import threading
 import unittest
-from typing import Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence
 
 import rosgraph
 import rospy
@@ -13,7 +13,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger, TriggerResponse
 
 import self_awareness
-from live_system import Process
+from live_system import Process, operation, ours, run_program, write_bag
 
 
 class Talker:
@@ -112,10 +112,36 @@ class MonitorCase(unittest.TestCase):
         settings = dict({'detector': 'paper', 'unknown': 'ignore', 'settle_time': 0.5,
                          'poll_interval': 0.1, 'recorder/directory': self.path('recorder')},
                         **parameters)
-        return Process('rosrun', 'self_awareness', 'self_awareness_node', '__name:=' + name,
-                       '_model:=' + model,
-                       *['_{}:={}'.format(key, value) for key, value in settings.items()])
+        return ours('self_awareness_node', '__name:=' + name, '_model:=' + model,
+                    *['_{}:={}'.format(key, value) for key, value in settings.items()])
 
     def call(self, service: str) -> TriggerResponse:
         rospy.wait_for_service(service, 20)
         return rospy.ServiceProxy(service, Trigger)()
+
+
+class TrainedCase(MonitorCase):
+    """With a model that has limits, of nodes that a test starts by talker()."""
+
+    components = [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)]
+    """Source, topic and mean period [s] of each."""
+    bags: List[str]
+    trained: str
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, folder)
+        cls.bags = [write_bag(os.path.join(folder, '{}.bag'.format(seed)),
+                              operation(cls.components, 120, seed)) for seed in (1, 2)]
+        cls.trained = os.path.join(folder, 'trained')
+        run_program('train', *cls.bags, '-o', cls.trained)
+
+    def setUp(self) -> None:
+        super().setUp()
+        shutil.copy(self.trained, self.path('model'))
+
+    def trained_monitor(self, **options: Any) -> Process:
+        """A monitor by the default detector, which says what it never saw in training."""
+        return self.monitor(self.path('model'), **{'detector': 'evidence', 'unknown': 'warn',
+                                                   'subscribe': 'all', **options})

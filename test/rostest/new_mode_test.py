@@ -8,8 +8,9 @@ from typing import List
 import rospy
 import rostest
 
-from accept_test import TrainedCase, accept, talker
-from live_system import MonitorListener, Process, again_if_disturbed, await_condition
+from accept_test import accept
+from live_system import MonitorListener, again_if_disturbed, await_condition, ours, talker
+from monitor_case import TrainedCase
 from self_awareness.msg import SelfAwareness
 
 
@@ -56,8 +57,7 @@ class NewModeTest(TrainedCase):
             nodes = {name: robot.enter_context(talker(name[1:], topic, 1 / period))
                      for name, topic, period in self.components if name != '/slam'}
             # Without a subscription, nobody would know who hears whom.
-            robot.enter_context(Process('rosrun', 'self_awareness', 'talker.py', '__name:=slam',
-                                        '_output:=/pose', '_input:=/scan'))
+            robot.enter_context(ours('talker', '__name:=slam', '_output:=/pose', '_input:=/scan'))
 
             def send(number: int) -> None:
                 for name in self.off:
@@ -87,8 +87,7 @@ class NewModeTest(TrainedCase):
                 off_again_at = len(listener.statuses)
                 send(signal.SIGSTOP)
                 self.await_off(listener, *self.off)
-                seen = len(listener.statuses)
-                await_condition('windows', lambda: len(listener.statuses) > seen + 50, 30)
+                listener.next_statuses(50)
                 self.assertEqual(self.of_those_off(listener, off_again_at), [])
                 nodes['/imu'].send(signal.SIGKILL)
                 await_condition('a death that is found', lambda: any(

@@ -17,7 +17,7 @@ from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from live_system import Process, await_condition
+from live_system import Process, await_condition, ours
 from monitor_case import Talker, subscribers
 from self_awareness import (EncodingRules, read_events, recordings_in_event_log,
                             summarise_bag)
@@ -139,8 +139,8 @@ class RecordTest(unittest.TestCase):
     def test_a_missing_folder_is_told_once_and_recording_begins_when_it_is_there(self) -> None:
         said, folder = [], self.folder + '/new'
         listener = rospy.Subscriber('/rosout', Log, said.append)
-        with Process('rosrun', 'self_awareness', 'record_events', '__name:=early',
-                     '_output:={}/run'.format(folder)), Talker('/a'):
+        with ours('record_events', '__name:=early',
+                  '_output:={}/run'.format(folder)), Talker('/a'):
             looks: List[object] = []
             looking = rospy.Subscriber('/diagnostics', DiagnosticArray, lambda array: looks.extend(
                 status for status in array.status if status.name == 'early: recording'
@@ -157,8 +157,8 @@ class RecordTest(unittest.TestCase):
         said = []
         listener = rospy.Subscriber('/diagnostics', DiagnosticArray, said.append)
         # Under a name of its own: the parameters stay on the master.
-        with Process('rosrun', 'self_awareness', 'record_events', '__name:=full',
-                     '_output:={}/run'.format(self.folder), '_min_space:=1e12'):
+        with ours('record_events', '__name:=full',
+                  '_output:={}/run'.format(self.folder), '_min_space:=1e12'):
             await_condition('an error', lambda: [
                 status for array in said for status in array.status
                 if status.name == 'full: recording' and status.level == 2
@@ -174,9 +174,9 @@ class RecordTest(unittest.TestCase):
                 ('encoding/type_fields', '{std_msgs/Float32: {field: data, classes: 4}}'),
                 ('encoding/mode', '{topic: /a}'), ('split', '0'))):
             name = 'wrong{}'.format(number)
-            recorder = Process('rosrun', 'self_awareness', 'record_events', '__name:=' + name,
-                               '_output:={}/run'.format(self.folder),
-                               '_{}:={}'.format(parameter, value))
+            recorder = ours('record_events', '__name:=' + name,
+                            '_output:={}/run'.format(self.folder),
+                            '_{}:={}'.format(parameter, value))
             with recorder:
                 self.assertEqual(recorder.wait(30), 1)
                 self.assertIn('/{}/{}'.format(name, parameter.split('/')[0]), recorder.output)

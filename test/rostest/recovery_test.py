@@ -6,7 +6,6 @@ import json
 import os
 import shutil
 import signal
-import subprocess
 import tempfile
 import time
 from contextlib import contextmanager
@@ -16,9 +15,10 @@ import rospy
 import rostest
 import yaml
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
+from std_srvs.srv import Trigger, TriggerResponse
 
-from live_system import MonitorListener, Process, again_if_disturbed, await_condition, pid_of
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition, ours,
+                         pid_of, run_program)
 from monitor_case import MonitorCase
 from self_awareness.msg import RecoveryAction, RecoveryActions
 from self_awareness.srv import Maintenance, MaintenanceResponse
@@ -84,9 +84,7 @@ class RecoveryTest(MonitorCase):
         for command in (('simulate', '-o', cls.bags, '--duration', '120', '--runs', '2'),
                         ('train', os.path.join(cls.bags, 'normal_1.bag'),
                          os.path.join(cls.bags, 'normal_2.bag'), '-o', cls.trained)):
-            done = subprocess.run(('rosrun', 'self_awareness', *command), text=True,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
-            assert done.returncode == 0, done.stdout
+            run_program(*command)
         cls.heard = Heard()
         cls.robot = Process('roslaunch', '--wait', 'self_awareness', 'follow_me.launch',
                             'respawn:=true')
@@ -107,7 +105,7 @@ class RecoveryTest(MonitorCase):
         """Needs a monitor: where that keeps its incidents is read once."""
         await_condition('the monitor', lambda: rospy.has_param(
             '/self_awareness/recorder/directory'), 20)
-        return Process('rosrun', 'self_awareness', 'recovery.py', rules)
+        return ours('recovery.py', rules)
 
     def await_player(self) -> None:
         begin = time.monotonic()
@@ -154,14 +152,6 @@ class RecoveryTest(MonitorCase):
     def hold(self, duration: float) -> MaintenanceResponse:
         return rospy.ServiceProxy(RECOVERY + '/hold', Maintenance)(duration)
 
-    def test_it_is_not_started_with_rules_that_it_cannot_use(self) -> None:
-        done = subprocess.run(
-            ('rosrun', 'self_awareness', 'recovery.py', self.rules({'stop': ['/.*']})),
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
-        self.assertEqual(done.returncode, 1)
-        self.assertIn('rules.yaml: rules[0].steps[0].stop: ', done.stderr)
-        self.assertIn('patterns are not allowed; give each full name', done.stderr)
-
     @again_if_disturbed
     def test_who_hangs_is_back_within_5_s_of_the_alarm_and_nobody_else_is_touched(self) -> None:
         others = ['/' + spec.name for spec in load_scenario().components
@@ -188,10 +178,8 @@ class RecoveryTest(MonitorCase):
             self.assertIn('stop /player', {each.key: each.value for each in status.values}[
                 'action 1'])
             self.assertEqual({node: pid_of(node) for node in others}, before)
-            shown = json.loads(subprocess.run(
-                ('rosrun', 'self_awareness', 'incidents', '--json', '--file',
-                 self.path('recorder/self_awareness.incidents')), text=True, check=True,
-                stdout=subprocess.PIPE).stdout)
+            shown = json.loads(run_program('incidents', '--json', '--file',
+                                           self.path('recorder/self_awareness.incidents')))
             self.assertEqual([[did['action'] for did in each['actions']] for each in shown
                               if each['id'] == alarm.alarm], [['stop /player']])
 
@@ -209,30 +197,12 @@ class RecoveryTest(MonitorCase):
             self.assertEqual(state_of(camera), 'T', 'there is no rule for it')
 
     @again_if_disturbed
-    def test_what_does_not_help_stops_at_its_limit_and_says_so(self) -> None:
-        calls: List[float] = []
-
-        def on_call(_: TriggerRequest) -> TriggerResponse:
-            calls.append(time.monotonic())
-            return TriggerResponse(True, 'no change')
-
-        service = rospy.Service('/does_not_help', Trigger, on_call)
-        self.addCleanup(service.shutdown)
-        rules = self.rules({'call': '/does_not_help'}, limit=2, wait=1.0)
-        with self.recovering(rules) as recovery:
-            with self.hung() as pid:
-                status = recovery.await_status(DiagnosticStatus.ERROR, 'gave up on /player', 60)
-                self.assertIn('2 actions in an hour, which is the limit', status.message)
-                self.assertEqual([each.result for each in recovery.actions],
-                                 ['/does_not_help says: no change'] * 2)
-                recovery.await_status(DiagnosticStatus.ERROR, 'gave up on /player')
-                self.assertEqual(state_of(pid), 'T', 'nobody touched it')
-            self.assertEqual(len(calls), 2)
-            recovery.await_status(DiagnosticStatus.OK, '2 actions so far', 60)
-
-    @again_if_disturbed
     def test_nothing_is_done_while_it_is_held_also_by_another_start_of_it(self) -> None:
-        rules = self.rules(STOP)
+        """Then step after step."""
+        service = rospy.Service('/does_not_help', Trigger,
+                                lambda _: TriggerResponse(True, 'no change'))
+        self.addCleanup(service.shutdown)
+        rules = self.rules({'call': '/does_not_help'}, STOP, wait=1.0)
         with self.recovering(rules):
             self.assertIn('from 1 to 86400 s', self.hold(1e9).message)
             self.assertIn('does nothing until', self.hold(600.0).message)
@@ -249,8 +219,11 @@ class RecoveryTest(MonitorCase):
                 recovery.await_status(DiagnosticStatus.WARN, 'does nothing until')
                 self.assertEqual((recovery.actions, state_of(pid)), ([], 'T'))
                 self.assertEqual(self.hold(0.0).message, 'goes on')
-                await_condition('then it is done', lambda: any(
-                    each.success for each in recovery.actions), 40)
+                await_condition('then it is done', lambda: sum(
+                    each.success for each in recovery.actions) == 2, 40)
+                self.assertEqual([each.result for each in recovery.actions],
+                                 ['/does_not_help says: no change',
+                                  '/player ended by SIGKILL, since it hangs'])
 
     def test_who_cannot_be_stopped_is_told_before_it_is_needed(self) -> None:
         stop = {'stop': ['/lasting', '/required', '/misspelt', PLAYER]}
@@ -264,19 +237,6 @@ class RecoveryTest(MonitorCase):
                 words in ''.join(told()) for words in (
                     '/lasting is not respawn="true"', '/required is required="true"',
                     '/misspelt: not heard so far')), 40)
-
-    @again_if_disturbed
-    def test_a_dry_run_says_what_it_would_do(self) -> None:
-        with self.recovering(self.rules(STOP, dry_run=True)) as recovery:
-            with self.hung() as pid:
-                await_condition('it is told', lambda: any(
-                    each.over for each in recovery.actions), 40)
-                action = recovery.actions[0]
-                self.assertEqual(
-                    (action.dry_run, action.action, action.result),
-                    (True, 'stop /player', 'nothing, since this is a dry run: /player hangs, and '
-                     'is process {}'.format(pid)))
-                self.assertEqual(state_of(pid), 'T')
 
 
 def state_of(pid: int) -> str:

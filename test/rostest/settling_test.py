@@ -1,9 +1,7 @@
 #!/usr/bin/python3
 """When the monitor settles, and what ~reload changes and leaves."""
 
-import signal
 import statistics
-import subprocess
 import time
 from typing import List
 
@@ -13,29 +11,18 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import String
 
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         operation, write_bag)
-from monitor_case import MonitorCase, Talker, publishers
+                         talker)
+from monitor_case import Talker, TrainedCase
 from self_awareness.msg import SelfAwareness
-
-
-def talker(name: str, topic: str, rate: float) -> Process:
-    """A node whose periods vary as those of operation()."""
-    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
-                   '_rate:={}'.format(rate), '_variation:=0.3')
 
 
 def late() -> Process:
     return talker('late', '/late', 10)
 
 
-class SettlingTest(MonitorCase):
+class SettlingTest(TrainedCase):
 
-    def await_statuses(self, listener: MonitorListener, number: int) -> List[SelfAwareness]:
-        """The next statuses."""
-        seen = len(listener.statuses)
-        await_condition('{} statuses'.format(number),
-                        lambda: len(listener.statuses) >= seen + number, 20)
-        return listener.statuses[seen:]
+    components = [*TrainedCase.components, ('/late', '/late', 0.1)]
 
     # New publishers
 
@@ -47,32 +34,17 @@ class SettlingTest(MonitorCase):
                 MonitorListener() as listener:
             listener.await_settled()
             await_condition('the monitor listens', rare.get_num_connections, 20)
-            reports = len(listener.heartbeats)
-            await_condition('two reports', lambda: len(listener.heartbeats) > reports + 1, 20)
+            listener.await_heartbeats(2)
             self.assertEqual(listener.value('monitor', 'publishers heard'), '1',
                              'its own reports, which it hears, do not count')
             seen = len(listener.statuses)
             rare.publish()
             await_condition('it is heard', lambda: (
                 listener.value('monitor', 'publishers heard') == '2'), 20)
-            self.await_statuses(listener, 5)
+            listener.next_statuses(5)
             self.assertEqual({s.settling for s in listener.statuses[seen:]}, {False})
 
     # By the paper's detector: the whole robot settles.
-
-    @again_if_disturbed
-    def test_a_component_that_starts_later_is_new_once(self) -> None:
-        with Talker('/a'), self.monitor(self.late_model()), MonitorListener() as listener:
-            listener.await_settled()
-            with late():
-                await_condition('settling', lambda: listener.statuses[-1].settling, 20)
-                listener.await_settled()
-            heard = len(listener.statuses)
-            with late():
-                await_condition('it is heard again', lambda: any(
-                    status.events > 3 for status in listener.statuses[heard:]), 20)
-                statuses = self.await_statuses(listener, 10)
-            self.assertEqual({s.settling for s in statuses}, {False})
 
     @again_if_disturbed
     def test_settling_does_not_wait_for_the_next_poll_of_the_master(self) -> None:
@@ -87,44 +59,10 @@ class SettlingTest(MonitorCase):
 
     # By the default detector: what is new settles, and nothing else.
 
-    def evidence_model(self) -> str:
-        """A model of three nodes, with limits."""
-        bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
-            [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1), ('/late', '/late', 0.1)],
-            120, seed)) for seed in (1, 2)]
-        subprocess.run(['rosrun', 'self_awareness', 'train', *bags, '-o', self.path('model')],
-                       check=True, stdout=subprocess.DEVNULL)
-        return self.path('model')
-
-    @again_if_disturbed
-    def test_an_alarm_stands_whoever_starts_meanwhile(self) -> None:
-        with talker('driver', '/scan', 12.5) as driver, talker('base', '/odom', 10), \
-                self.monitor(self.evidence_model(), detector='evidence', unknown='warn',
-                             settle_time=3, hold_time=0.3), MonitorListener() as listener:
-            listener.await_settled()
-            driver.send(signal.SIGKILL)
-            listener.await_alarm()
-            await_condition('it is reported', lambda: (
-                listener.diagnostics('communication')[-1].level == DiagnosticStatus.ERROR), 20)
-            stands, reports = len(listener.statuses), len(listener.diagnostics('communication'))
-            # A node with a new name, which publishes /rosout as all do, and one of the model.
-            with Process('rosrun', 'nodelet', 'nodelet', 'manager', '__name:=newcomer'), late():
-                await_condition('the newcomer is there', lambda: '/newcomer' in publishers(
-                    '/rosout'), 20)
-                await_condition('the late one is heard', lambda: (
-                    float(listener.value('/late', 'events a second') or 0) > 5), 20)
-                self.await_statuses(listener, 50)
-            said = listener.statuses[stands:]
-            self.assertEqual({status.level for status in said}, {SelfAwareness.ERROR})
-            self.assertEqual({status.suspects[0].source for status in said}, {'/driver'})
-            self.assertEqual({status.level for status
-                              in listener.diagnostics('communication')[reports:]},
-                             {DiagnosticStatus.ERROR})
-
     @again_if_disturbed
     def test_what_does_not_come_after_the_start_is_said(self) -> None:
         with talker('driver', '/scan', 12.5), talker('base', '/odom', 10), \
-                self.monitor(self.evidence_model(), detector='evidence', unknown='warn'), \
+                self.trained_monitor(subscribe='used'), \
                 MonitorListener() as listener:
             listener.await_settled()
             await_condition('it is missing', lambda: any(
@@ -199,7 +137,7 @@ class SettlingTest(MonitorCase):
         arrivals: List[float] = []
         with self.monitor(self.model(window=4 * 10**9)), MonitorListener() as listener:
             with Talker('/a'):
-                self.await_statuses(listener, 1)
+                listener.next_statuses(1)
                 self.model(window=10**8)
                 self.assertTrue(self.call('/self_awareness/reload').success)
                 listener.await_settled()

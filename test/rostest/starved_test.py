@@ -4,15 +4,14 @@
 import multiprocessing
 import os
 import re
-import subprocess
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import (PRESSURE, MonitorListener, Process, Waiting, again_if_disturbed,
-                         await_condition, operation, write_bag)
-from monitor_case import MonitorCase
+                         await_condition, run_program, talker)
+from monitor_case import TrainedCase
 from self_awareness.msg import SelfAwareness
 
 LOOP = 'while True: pass'
@@ -20,38 +19,20 @@ MOST_WAITING = 0.3
 """Share of the time for which processes wait, at most, where a test can tell a load of its own."""
 
 
-def talker(name: str, topic: str, rate: float) -> Process:
-    """A node whose periods vary as those of operation()."""
-    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
-                   '_rate:={}'.format(rate), '_variation:=0.3')
-
-
-class StarvedTest(MonitorCase):
+class StarvedTest(TrainedCase):
 
     def setUp(self) -> None:
         super().setUp()
         if not os.path.exists(PRESSURE):
             self.skipTest('this kernel does not tell its pressure: no ' + PRESSURE)
 
-    def run_program(self, *command: str) -> str:
-        done = subprocess.run(['rosrun', 'self_awareness', *command], stdout=subprocess.PIPE,
-                              stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout
-
     @again_if_disturbed
     def test_busy_loops_are_the_machines_fault(self) -> None:
-        bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
-            [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)], 120, seed)) for seed in (1, 2)]
-        self.run_program('train', *bags, '-o', self.path('model'))
         with talker('driver', '/scan', 12.5), talker('base', '/odom', 10), \
                 self.monitor(self.path('model'), detector='evidence'), \
                 MonitorListener() as listener:
             waiting = Waiting()
-            listener.await_settled()
-            await_condition('both are heard', lambda: all(
-                float(listener.value(node, 'events a second') or 0) > 5
-                for node in ('/driver', '/base')), 20)
+            listener.await_heard('/driver', '/base')
             if waiting.share() > MOST_WAITING:  # to the monitor, that is usual
                 self.skipTest('this machine has too much to do already: processes wait for '
                               '{:.0%} of the time'.format(waiting.share()))
@@ -80,8 +61,8 @@ class StarvedTest(MonitorCase):
             response = self.call('/self_awareness/dump')
             path = re.search(r' go to (\S+\.bag)$', response.message).group(1)
             await_condition('it is written', lambda: os.path.exists(path), 20)
-        printed = self.run_program('score', path, '--model', self.path('model'), '--unknown',
-                                   'ignore', '--settle-time', '0.5')
+        printed = run_program('score', path, '--model', self.path('model'), '--unknown', 'ignore',
+                              '--settle-time', '0.5')
         self.assertIn('the machine has been starved for', printed)
         self.assertIn('alarms: 0,', printed)
 

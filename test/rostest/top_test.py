@@ -15,7 +15,7 @@ from typing import List
 import rospy
 import rostest
 
-from live_system import MonitorListener, Process, again_if_disturbed, await_condition
+from live_system import MonitorListener, Process, again_if_disturbed, await_condition, path_of
 from monitor_case import MonitorCase, Talker
 from self_awareness.msg import SelfAwareness
 
@@ -77,7 +77,7 @@ class Terminal:
 
 
 def top(**environment: str) -> Terminal:
-    return Terminal('rosrun', 'self_awareness', 'top', **environment)
+    return Terminal(path_of('top'), **environment)
 
 
 class TopTest(MonitorCase):
@@ -123,15 +123,6 @@ class TopTest(MonitorCase):
                     listener.alarms[-1].level == SelfAwareness.OK), 20)
 
     @again_if_disturbed
-    def test_it_shows_who_is_not_heard_yet_and_whom_nobody_watches(self) -> None:
-        model = self.model(topics=['/a', '/late'], sources={'/late': '/late'})
-        with self.monitor(model), Talker('/a'), top() as terminal, Process(
-                'rosrun', 'topic_tools', 'relay', '/a', '/relayed', '__name:=relay'):
-            terminal.await_text('1 of 2 heard so far')
-            terminal.await_text('/relay ')
-            terminal.await_text('not watched: training never')
-
-    @again_if_disturbed
     def test_a_monitor_that_hangs_is_stale_and_keys_go_on(self) -> None:
         with self.monitor(self.model()) as monitor, MonitorListener() as listener:
             with Talker('/a'), top() as terminal:
@@ -164,7 +155,7 @@ class TopTest(MonitorCase):
             self.assertIn('no master answers at ' + address, terminal.text)
 
     def test_without_a_terminal_it_says_so(self) -> None:
-        done = subprocess.run(('rosrun', 'self_awareness', 'top'), stdin=subprocess.DEVNULL,
+        done = subprocess.run((path_of('top'),), stdin=subprocess.DEVNULL,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn('needs a terminal', done.stderr)

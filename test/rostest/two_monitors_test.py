@@ -71,9 +71,6 @@ class TwoMonitorsTest(MonitorCase):
     def test_the_monitor_beside_the_learner(self) -> None:
         self.check('learn.launch', 'monitor.launch')
 
-    def test_the_learner_beside_the_monitor(self) -> None:
-        self.check('monitor.launch', 'learn.launch')
-
     def test_two_nodelets(self) -> None:
         self.check('monitor.launch', 'monitor.launch', 'standalone:=false')
 

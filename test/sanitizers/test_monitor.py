@@ -119,7 +119,7 @@ def _robot() -> Iterator[Dict[str, Process]]:
 def component(name: str) -> Process:
     """Start a component of the robot."""
     topic, rate = COMPONENTS[name]
-    return Process('rosrun', 'self_awareness', 'talker.py', f'__name:={name}',
+    return Process('rosrun', 'self_awareness', 'talker', f'__name:={name}',
                    f'_output:={topic}', f'_rate:={rate}', '_variation:=0.5')
 
 

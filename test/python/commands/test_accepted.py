@@ -59,10 +59,14 @@ def test_calibrate_in_place_leaves_the_file_alone(models: Tuple[str, str],
 def test_train_keeps_what_is_accepted_beside_its_output(models: Tuple[str, str], long_bags: Bags,
                                                         capsys) -> None:
     source, output = models
+    learned = heard(source)
+    accepted_file.keep([*accepted_file.beside(output), learned], output)
     assert train.main(['--add-to', source, long_bags[1], '-o', output]) == 0
     assert read_accepted(output + '.accepted') == [OF_OUTPUT, Acceptance('/nobody', at=5),
                                                    OF_SOURCE]
-    assert 'accepted, and not learned: /nobody' in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert f'learned now, so it is judged again: {learned.component} (slow)' in said
+    assert 'accepted, and not learned: /nobody' in said
 
 
 def test_a_damaged_file_is_found_before_anything_is_written(models: Tuple[str, str],

@@ -47,18 +47,6 @@ def test_a_part_of_a_folder_is_that_part_of_each_bag(folder: Path, tmp_path: Pat
     assert all(each.end - each.start < 15.1e9 for each in TrainedModel.load(model).recordings)
 
 
-def test_a_bag_of_a_folder_is_not_overwritten(folder: Path, model_file: str, capsys) -> None:
-    bag = folder / 'first.bag'
-    before = bag.read_bytes()
-    for program, arguments in (
-            (train, [str(folder), '-o', str(bag)]),
-            (calibrate, ['--model', model_file, '--normal', str(folder), '-o', str(bag)]),
-            (score, [str(folder), '--model', model_file, '--result-bag', str(bag)]),
-            (convert, [str(folder), '-o', str(bag)])):
-        assert str(bag) in error_of(program, arguments, capsys)
-    assert bag.read_bytes() == before
-
-
 def test_a_folder_without_bags_is_named(tmp_path: Path, capsys) -> None:
     (tmp_path / '.self_awareness_part1_0.normal.bag').touch()  # somebody is writing it
     for program in (train, convert):

@@ -1,7 +1,6 @@
 """`score --result-bag`: what the monitor would have published, with the times of the recording."""
 from __future__ import annotations
 
-import itertools
 import json
 import os
 import re
@@ -101,22 +100,6 @@ def test_programs_need_not_parse_words(evidence_model: str, results: Tuple[str, 
     first = died['suspects'][0]
     assert first['unit'] == 's' and first['value'] == pytest.approx(died['begin_s'] - 12, abs=0.2)
     assert first['usual'] < first['value'] and first['after'] is None
-
-
-def test_an_alarm_keeps_its_id_until_it_is_over(results: Tuple[str, Dict[str, Any]]) -> None:
-    path, _ = results
-    said = [(message.level, message.alarm) for message, _ in read(path, STATUS)]
-    stretches = [alarms for level, alarms in
-                 ((level, {alarm for _, alarm in same})
-                  for level, same in itertools.groupby(said, lambda each: each[0]))
-                 if level != OK]
-    assert all(len(alarms) == 1 for alarms in stretches)
-    ids = [alarm for alarms in stretches for alarm in alarms]
-    assert ids == sorted(set(ids)) and 0 not in ids
-    ended = [(alarm, now) for (level, alarm), (after, now) in zip(said, said[1:])
-             if level != OK and after == OK]
-    assert ended and all(alarm == now for alarm, now in ended), 'which one is over'
-    assert {alarm for level, alarm in said if level == OK} - set(ids) == {0}
 
 
 def test_times_are_those_of_the_recording(results: Tuple[str, Dict[str, Any]],

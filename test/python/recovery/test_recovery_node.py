@@ -125,6 +125,17 @@ def test_a_hold_says_what_is_still_being_done(recovery: Recovery) -> None:
     assert recovery._why_held() == ''
 
 
+@pytest.mark.parametrize('dry_run, result', [
+    (True, 'nothing, since this is a dry run: would end'), (False, 'ended')])
+def test_in_a_dry_run_nothing_is_done(recovery: Recovery, dry_run: bool, result: str,
+                                      monkeypatch: pytest.MonkeyPatch) -> None:
+    recovery._rules = Rules((RULE,), dry_run=dry_run)
+    monkeypatch.setattr(recovery._actions, 'do', lambda *_: 'ended')
+    monkeypatch.setattr(recovery._actions, 'would_do', lambda step: 'would end')
+    recovery._do(Order(RULE, 1, RULE.steps[0], FAULT))
+    assert recovery._done == (True, result)
+
+
 @pytest.mark.parametrize('dry_run', [True, False])
 def test_a_step_that_fails_unexpectedly_has_failed(recovery: Recovery, dry_run: bool,
                                                    monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ from typing import Dict, List
 
 from conftest import wait_until
 
-DOCS = Path(__file__).resolve().parents[2] / 'docs'
+DOCS = Path(__file__).resolve().parents[3] / 'docs'
 BACKGROUND = '# in a terminal of its own'
 WAIT = re.compile(r'# when (\S+) is there')
 COMMAND_S = 300.0

@@ -44,7 +44,7 @@ def test_what_is_normal_is_accepted_and_taken_back_as_the_page_says(reader: Read
     learned(reader)
     reader.type(f'{BACKGROUND}\nroslaunch self_awareness monitor.launch model:=robot.model')
     for name, topic, rate in reversed(NODES):
-        reader.type(f'{BACKGROUND}\nrosrun self_awareness talker.py __name:={name[1:]} '
+        reader.type(f'{BACKGROUND}\nrosrun self_awareness talker __name:={name[1:]} '
                     f'_output:={topic} _rate:={rate} _variation:=0.3')
     reader.type('rostopic echo -n 1 --filter "not m.settling and m.events > 1" '
                 '/self_awareness/status')

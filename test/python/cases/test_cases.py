@@ -1,10 +1,75 @@
-"""Who sends what: another node, two of one name, a player; by the cases of ../shared/cases."""
+"""What `score` says of the cases of ../shared/cases, by one model of their robot."""
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any, Callable, Dict, List
 
 import pytest
+
+from self_awareness.commands import info
+
+# Recordings that were cut, or that have a bad one among them
+
+SPLIT = '17_split_bags_death_before_a_split'
+EMPTY = '28_empty_bag_in_a_folder'
+NAME = 'run_2026-03-04-10-11-12_{}.bag'
+DEATH_S = 59.7
+
+
+@pytest.fixture(scope='module', name='bags')
+def _bags(cases: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the bags of both cases."""
+    out = tmp_path_factory.mktemp('cut')
+    for name in (SPLIT, EMPTY):
+        cases.make(name, out)
+    return out
+
+
+def check_death(said: Dict[str, Any]) -> None:
+    """Check that there is one alarm, to the end, and one incident, since the death."""
+    alarm, = [alarm for alarm in said['alarms'] if alarm['level'] == 'ERROR']
+    assert alarm['culprit'] == '/lidar' and alarm['kind'] == 'died' and not alarm['over']
+    incident, = said['incidents']
+    assert incident['level'] == 'ERROR' and incident['cause'] == '/lidar'
+    since = min(each['from_s'] for each in incident['silent'] if each['component'] == '/lidar')
+    assert since == pytest.approx(DEATH_S, abs=0.1)
+
+
+def test_a_death_before_a_split_is_one_alarm(scored, bags: Path, tmp_path: Path, capsys) -> None:
+    said, = scored(str(bags / 'run'))
+    check_death(said)
+    out = capsys.readouterr().out
+    assert f'{NAME.format(0)}..4: 5 files of one recording' in out
+    assert f'/lidar and /amcl stopped sending at 59.6 s. (29.6 s of {NAME.format(1)})' in out
+    assert f'29.6 s of {NAME.format(1)}' in (tmp_path / 'r.html').read_text(encoding='utf-8')
+    assert info.main([str(bags / 'run')]) == 0
+    assert f'from 30.0 s on: {NAME.format(1)}' in capsys.readouterr().out
+
+
+def test_an_empty_bag_hides_nothing_behind_it(scored, bags: Path, tmp_path: Path, capsys) -> None:
+    day = bags / 'day'
+    quiet, dead = scored(str(day), code=1)
+    assert quiet['bag'] == str(day / 'a.bag') and not quiet['alarms']
+    assert dead['bag'] == str(day / 'c.bag')
+    assert {alarm['culprit'] for alarm in dead['alarms'] if alarm['level'] == 'ERROR'} == {
+        '/lidar'}
+    error = capsys.readouterr().err
+    assert error.startswith(f'score: error: {day}/b.bag: the bag is empty'), error
+    assert error.count('\n') == 1
+    scored(str(day), '--skip-bad')
+    assert f'warning: skipped: {day}/b.bag: the bag is empty' in capsys.readouterr().err
+
+
+# What began before an excuse stays what it was
+
+def test_a_stall_takes_no_death_away(cases, scored, tmp_path: Path) -> None:
+    recording, = scored(str(cases.make('01_stall_hides_a_death', tmp_path) / 'crash.bag'))
+    assert recording['incidents'][0]['headline'] == '/lidar and /amcl stopped sending at 50.0 s.'
+    alarm, = [each for each in recording['alarms'] if each['level'] == 'ERROR']
+    assert (alarm['kind'], alarm['culprit'], alarm['over']) == ('died', '/lidar', False)
+
+
+# Who sends what: another node, two of one name, a player
 
 SOON_S = 2.0
 """So long after it begins, what is wrong with senders is told at the latest."""
