@@ -1,7 +1,5 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -9,19 +7,13 @@
 #include <vector>
 
 #include "attributed.h"
-#include "self_awareness/core/evidence/judge.h"
+#include "judged.h"
 #include "self_awareness/core/evidence/limits/coverage.h"
-#include "self_awareness/core/learn.h"
-#include "self_awareness/core/verdict/detector.h"
 
 /// Robots of two sources, from their events to the alarm, for the tests of the channels of
 /// attributes.
 namespace self_awareness::core::evidence {
 
-constexpr char kAge[] = "age";
-constexpr char kLost[] = "lost";
-constexpr char kSize[] = "size";
-constexpr char kFrozen[] = "frozen";
 constexpr std::int64_t kLength = 200 * kSecond;
 constexpr std::int64_t kFault = 60 * kSecond;  // after the start of a recording
 
@@ -42,25 +34,18 @@ inline Tuning withFrozen() {
 /// A model of recordings, each of a start of its own.
 inline std::shared_ptr<const core::Model> learned(const std::vector<Events>& recordings,
                                                   const Tuning& tuning = withFrozen()) {
-  Learner::Parameters parameters;
-  parameters.tuning = tuning;
-  Learner learner(parameters, {});
-  learner.intern(kTypes[kA]);
-  learner.intern(kTypes[kB]);
-  for (const Events& events : recordings) {
-    learner.add({events, ""});
-  }
-  auto model = std::make_shared<core::Model>(learner.learn());
-  EXPECT_TRUE(model->calibration) << learner.why();
-  return model;
+  return std::make_shared<core::Model>(learnedFrom({kTypes[kA], kTypes[kB]}, recordings, tuning));
+}
+
+/// Four starts of a robot.
+/// @param start its events, by its seed
+template <typename Start>
+std::vector<Events> fourStarts(const Start& start) {
+  return {start(0), start(1), start(2), start(3)};
 }
 
 inline std::shared_ptr<const core::Model> learned(const Source& source) {
-  std::vector<Events> recordings;
-  for (unsigned seed = 0; seed < 4; ++seed) {
-    recordings.push_back(robot(source, seed));
-  }
-  return learned(recordings);
+  return learned(fourStarts([&](unsigned seed) { return robot(source, seed); }));
 }
 
 inline bool watches(const core::Model& model, const std::string& channel, EventId id = kA) {
@@ -85,22 +70,10 @@ struct Begun {
   std::vector<Suspect> suspects;
 };
 
-/// Judges a recording; tells the handler of every verdict.
-template <typename OnVerdict>
-void judge(const core::Model& model, const Events& events, OnVerdict onVerdict) {
-  Detector detector(makeJudge(std::make_shared<Model>(model.watched), model.limits(), model.window,
-                              std::make_shared<SourceGraph>()),
-                    model.window, {}, onVerdict);
-  for (const Event& event : events) {
-    detector.add(event);
-  }
-  detector.finish();
-}
-
 /// The first alarm of a recording.
 inline std::optional<Begun> alarmIn(const core::Model& model, const Events& events) {
   std::optional<Begun> alarm;
-  judge(model, events, [&](const Verdict& verdict) {
+  judge(model.makeJudge(), events, [&](const Verdict& verdict) {
     if (!alarm && verdict.alarm) {
       alarm = {verdict.window->start + model.window, verdict.evidence, verdict.suspects};
     }
@@ -111,17 +84,16 @@ inline std::optional<Begun> alarmIn(const core::Model& model, const Events& even
 /// Changes what all messages of the first source say.
 template <typename Change>
 std::vector<Events> recordingsWhere(Change change) {
-  std::vector<Events> recordings;
-  for (unsigned seed = 0; seed < 4; ++seed) {
-    recordings.push_back(robot({}, seed));
+  return fourStarts([&](unsigned seed) {
+    Events events = robot({}, seed);
     std::size_t number = 0;
-    for (Event& event : recordings.back()) {
+    for (Event& event : events) {
       if (event.id == kA) {
         change(event, number++);
       }
     }
-  }
-  return recordings;
+    return events;
+  });
 }
 
 }  // namespace self_awareness::core::evidence

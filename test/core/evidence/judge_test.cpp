@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -12,38 +10,24 @@
 #include <utility>
 #include <vector>
 
-#include "recordings.h"
-#include "self_awareness/core/verdict/detector.h"
+#include "../verdict/accepted.h"
+#include "judged.h"
+#include "tracks.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kPeriod = 200 * kMillisecond;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-Statistics followed(unsigned seed) {
-  const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
-  return countsOf({later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)},
-                  2);
-}
-
-Acceptance accepted(const std::string& component, const std::string& topic, Kind kind) {
-  Acceptance acceptance;
-  acceptance.component = component;
-  acceptance.topic = topic;
-  acceptance.kind = kind;
-  return acceptance;
-}
 
 class EvidenceJudgeTest : public testing::Test {
  protected:
   // Only what a test gives a limit is judged.
-  EvidenceJudgeTest() { limits_.tracks.assign(model_->tracks().size(), kNone); }
-  std::size_t track(const std::string& channel, EventId to, EventId from) const {
-    return indexOf(model_->tracks(), channel, to, from);
+  double& limit(const std::string& channel, EventId to, EventId from) {
+    return ofTrack(limits_.tracks, *model_, channel, to, from);
   }
+  double& limit(const std::string& channel, EventId id) { return limit(channel, id, id); }
   std::unique_ptr<core::Judge> newJudge(const std::optional<Limits>& limits) const {
-    return makeJudge(model_, limits, kWindow, std::make_shared<SourceGraph>());
+    return makeJudge(model_, limits, kWindow, graph_, heard_);
   }
   static Judgement judgeAt(core::Judge& judge, std::int64_t end,
                            NameSuspects suspects = NameSuspects::kNever) {
@@ -58,15 +42,18 @@ class EvidenceJudgeTest : public testing::Test {
     }
   }
 
-  std::shared_ptr<const Model> model_ = std::make_shared<Model>(watch(followed(1), followed(2)));
-  Limits limits_;
+  std::shared_ptr<const Model> model_ =
+      std::make_shared<Model>(watch(startOf(followed(1), 1, 2), startOf(followed(2), 2, 2)));
+  std::shared_ptr<Vocabulary> heard_;  // what is heard; none: what the model knows
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+  Limits limits_ = allLimits(*model_, kNone);
 };
 
 TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
   const std::int64_t age = 700 * kMillisecond;
   const double evidence = model_->overdue(kA, age);
   for (const double share : {0.5, 0.99, 1.01}) {
-    limits_.tracks[track(kOverdue, kA, kA)] = evidence / share;
+    limit(kOverdue, kA) = evidence / share;
     const std::unique_ptr<core::Judge> judge = newJudge(limits_);
     judge->add({0, kA});
     const Judgement judgement = judgeAt(*judge, age);
@@ -89,7 +76,7 @@ TEST_F(EvidenceJudgeTest, SaysWhatIsNotWatchedNow) {
   };
   EXPECT_TRUE(pairs_of(*newJudge(std::nullopt)).empty()) << "nothing is judged";
   EXPECT_TRUE(pairs_of(*newJudge(limits_)).empty()) << "no limit, not judged";
-  limits_.tracks[track(kPairs, kB, kA)] = 14;
+  limit(kPairs, kB, kA) = 14;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   const std::vector<std::pair<EventId, std::optional<EventId>>> b_after_a{{kB, kA}};
   EXPECT_EQ(pairs_of(*judge), b_after_a);
@@ -98,7 +85,7 @@ TEST_F(EvidenceJudgeTest, SaysWhatIsNotWatchedNow) {
 }
 
 TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   EXPECT_FALSE(judgeAt(*judge, kSecond).abnormal);
@@ -109,7 +96,7 @@ TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
 }
 
 TEST_F(EvidenceJudgeTest, OfAStarvedMachineNobodyIsNamed) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, 1200 * kMillisecond);
+  limit(kOverdue, kA) = model_->overdue(kA, 1200 * kMillisecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({-100 * kSecond, kA});
   judge->add({-100 * kSecond, kB});
@@ -136,7 +123,7 @@ TEST_F(EvidenceJudgeTest, OfAStarvedMachineNobodyIsNamed) {
 }
 
 TEST_F(EvidenceJudgeTest, AMachineThatStaysStarvedIsAnAlarm) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({-100 * kSecond, kB});
   judge->hear({-100 * kSecond, 0, 0});
@@ -154,8 +141,8 @@ TEST_F(EvidenceJudgeTest, AMachineThatStaysStarvedIsAnAlarm) {
 }
 
 TEST_F(EvidenceJudgeTest, AllAreSilentIfEverybodyShouldHaveSpoken) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  limits_.tracks[track(kOverdue, kB, kB)] = model_->overdue(kB, 11 * kSecond);
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kB) = model_->overdue(kB, 11 * kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   const std::int64_t end = kSecond + 50 * kMillisecond;
@@ -176,9 +163,9 @@ TEST_F(EvidenceJudgeTest, WhoSaysAnotherThingIsNotSilent) {
                     {{"/a", "/x", "T"}, {"/a", "/w", "T"}, {"/b", "/y", "T"}});
   };
   model_ = std::make_shared<Model>(watch(start(0), start(kStart)));
-  limits_.tracks.assign(model_->tracks().size(), kNone);
+  limits_ = allLimits(*model_, kNone);
   for (EventId id = 0; id < 3; ++id) {
-    limits_.tracks[track(kOverdue, id, id)] = model_->overdue(id, 2 * kSecond);
+    limit(kOverdue, id) = model_->overdue(id, 2 * kSecond);
   }
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   for (const Event& event : std::vector<Event>{{0, 2}, {kSecond, 0}, {2500 * kMillisecond, 1}}) {
@@ -192,8 +179,7 @@ TEST_F(EvidenceJudgeTest, WhoSaysAnotherThingIsNotSilent) {
 }
 
 TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
-  const std::size_t delay = track(kPairs, kB, kA);
-  limits_.tracks[delay] = model_->leastLimit(delay);
+  limit(kPairs, kB, kA) = model_->leastLimit(indexOf(model_->tracks(), kPairs, kB, kA));
   const std::unique_ptr<core::Judge> usual = newJudge(limits_);
   feed(*usual, 0);
   EXPECT_EQ(judgeAt(*usual, 40 * kPeriod).score, 0);
@@ -208,7 +194,7 @@ TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
 }
 
 TEST_F(EvidenceJudgeTest, AWindowThatEndsWithTheRecordingHasNotTooFewEvents) {
-  limits_.tracks[track(kFewer, kA, kA)] = 1;
+  limit(kFewer, kA) = 1;
   std::vector<bool> abnormal;
   Detector detector(newJudge(limits_), kWindow, {},
                     [&](const Verdict& verdict) { abnormal.push_back(verdict.abnormal); });
@@ -224,7 +210,7 @@ TEST_F(EvidenceJudgeTest, AWindowThatEndsWithTheRecordingHasNotTooFewEvents) {
 }
 
 TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   const Window unknown{0, {{{0, kC}, true, {}}}};
@@ -236,7 +222,7 @@ TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
 }
 
 TEST_F(EvidenceJudgeTest, WhoIsWithinHisOwnRangeIsNoSuspectBesideAnUnknownEvent) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   const Window unknown{900 * kMillisecond, {{{950 * kMillisecond, kC}, true, {}}}};
@@ -264,47 +250,38 @@ TEST_F(EvidenceJudgeTest, KnowsUnknownEvents) {
 }
 
 TEST_F(EvidenceJudgeTest, WhatIsAcceptedIsNoEvidenceAndAllElseIs) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  limits_.tracks[track(kOverdue, kB, kB)] = model_->overdue(kB, kSecond);
-  limits_.tracks[track(kFewer, kB, kB)] = 2;
-  const auto judgedWith = [&](const std::vector<Acceptance>& all) {
-    Acceptances together;
-    for (const Acceptance& each : all) {
-      together.add(each);
-    }
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kB) = model_->overdue(kB, kSecond);
+  limit(kFewer, kB) = 2;
+  const auto judgedWith = [&](const Acceptances& all) {
     const std::unique_ptr<core::Judge> judge = newJudge(limits_);
     for (int i = 0; i < 40; ++i) {
       judge->add({i * kPeriod, kA});
       judge->add({i * kPeriod + 20 * kMillisecond, kB});
       judgeAt(*judge, i * kPeriod + kWindow);
     }
-    judge->accept(together);
+    judge->accept(all);
     return judgeAt(*judge, 40 * kPeriod + 3 * kSecond, NameSuspects::kIfUnusual);
   };
   const auto named = [](const Judgement& judgement) {
-    std::set<EventId> ids;
-    for (const Suspect& suspect : judgement.suspects) {
-      ids.insert(suspect.id);
-    }
-    return ids;
+    const std::vector<EventId> ids = idsOf(judgement.suspects);
+    return std::set<EventId>(ids.begin(), ids.end());
   };
   EXPECT_EQ(named(judgedWith({})), (std::set<EventId>{kA, kB}));
-  Acceptance of_b = accepted("/b", "", Kind::kSlow);
-  const Judgement still_silent = judgedWith({of_b});
+  const Judgement still_silent = judgedWith(allOf({accepted("/b", "", Kind::kSlow)}));
   EXPECT_EQ(still_silent.evidence, "overdue") << "its rate is accepted, its silence is not";
   EXPECT_EQ(named(still_silent), (std::set<EventId>{kA, kB}));
-  of_b.kind.reset();
-  const Judgement of_a = judgedWith({of_b});
+  const Judgement of_a = judgedWith(allOf({accepted("/b")}));
   EXPECT_TRUE(of_a.abnormal) << "another one is silent, too";
   EXPECT_EQ(named(of_a), (std::set<EventId>{kA}));
-  const Judgement normal = judgedWith({of_b, accepted("/a*", "/x", Kind::kDied)});
+  const Judgement normal = judgedWith(allOf({accepted("/b"), accepted("/a*", "/x", Kind::kDied)}));
   EXPECT_EQ(normal.score.value(), 0);
   EXPECT_FALSE(normal.abnormal);
 }
 
 TEST_F(EvidenceJudgeTest, WhoIsOptionalMayBeAbsentAndIsJudgedWhileThere) {
-  limits_.tracks[track(kOverdue, kB, kB)] = model_->overdue(kB, kSecond);
-  limits_.tracks[track(kFewer, kB, kB)] = 2.5;
+  limit(kOverdue, kB) = model_->overdue(kB, kSecond);
+  limit(kFewer, kB) = 2.5;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   Acceptances optional;
   optional.add(accepted("/b", "", Kind::kNeverCame));
@@ -333,8 +310,8 @@ TEST_F(EvidenceJudgeTest, WhoIsOptionalMayBeAbsentAndIsJudgedWhileThere) {
 }
 
 TEST_F(EvidenceJudgeTest, WhatSettlesIsNotJudgedAndAllElseIs) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  limits_.tracks[track(kPairs, kB, kA)] = 1;
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kPairs, kB, kA) = 1;
   const std::int64_t now = 45 * kPeriod;
   const auto evidenceAt = [&](std::int64_t start, EventId is_new, std::int64_t until) {
     const std::unique_ptr<core::Judge> judge = newJudge(limits_);
@@ -351,7 +328,7 @@ TEST_F(EvidenceJudgeTest, WhatSettlesIsNotJudgedAndAllElseIs) {
 }
 
 TEST_F(EvidenceJudgeTest, WhatWasUnusualOfAStartDoesNotCountAfterwards) {
-  limits_.tracks[track(kPairs, kB, kA)] = 13;
+  limit(kPairs, kB, kA) = 13;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   feed(*judge, 5);
   std::int64_t now = 45 * kPeriod;
@@ -367,8 +344,7 @@ TEST_F(EvidenceJudgeTest, WhatWasUnusualOfAStartDoesNotCountAfterwards) {
 }
 
 TEST_F(EvidenceJudgeTest, RatesCountOnceNothingOfAStartIsInThem) {
-  const std::size_t fewer = track(kFewer, kA, kA);
-  limits_.tracks[fewer] = 0.1;
+  limit(kFewer, kA) = 0.1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->settle({0, kA}, 5 * kSecond);
   for (std::int64_t now = 0; now < 8 * kSecond; now += kWindow) {
@@ -382,8 +358,8 @@ TEST_F(EvidenceJudgeTest, RatesCountOnceNothingOfAStartIsInThem) {
 }
 
 TEST_F(EvidenceJudgeTest, WhatWasMissedIsNotJudgedAndAllElseIs) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  limits_.tracks[track(kPairs, kB, kA)] = 1;
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kPairs, kB, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   feed(*judge, 5);
   const std::int64_t now = 45 * kPeriod;
@@ -425,7 +401,7 @@ TEST_F(EvidenceJudgeTest, WhoWasSilentBeforeThisProgramStoodStillIsSilentStill) 
 }
 
 TEST_F(EvidenceJudgeTest, AfterARestartNothingSettlesThatDidBefore) {
-  limits_.tracks[track(kOverdue, kA, kA)] = 1;
+  limit(kOverdue, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->settle({0, kA}, 1000 * kSecond);
   judge->add({0, kA});
@@ -435,51 +411,8 @@ TEST_F(EvidenceJudgeTest, AfterARestartNothingSettlesThatDidBefore) {
   EXPECT_TRUE(judgeAt(*judge, 100 * kSecond).abnormal);
 }
 
-TEST_F(EvidenceJudgeTest, AnAlarmStandsAsLongAsItsCauseWhoeverStartsMeanwhile) {
-  const std::size_t overdue = track(kOverdue, kA, kA);
-  limits_.tracks[overdue] = model_->overdue(kA, kSecond);
-  std::vector<bool> alarm;
-  Detector detector(newJudge(limits_), kWindow, {},
-                    [&](const Verdict& verdict) { alarm.push_back(verdict.alarm); });
-  std::int64_t now = 0;
-  for (; now < 10 * kSecond; now += kPeriod) {
-    detector.add({now, kA});
-  }
-  detector.advance(now += 2 * kSecond);
-  EXPECT_TRUE(alarm.back());
-  alarm.clear();
-  // A component that the model knows starts, then one that it does not.
-  for (const EventId id : {kB, kC}) {
-    for (int i = 0; i < 100; ++i) {
-      detector.add({now += 100 * kMillisecond, id});
-    }
-  }
-  EXPECT_EQ(std::count(alarm.begin(), alarm.end(), false), 0);
-  EXPECT_GT(alarm.size(), 190U);
-}
-
-TEST_F(EvidenceJudgeTest, ADeathIsFoundWhileAnotherComponentStarts) {
-  const std::size_t overdue = track(kOverdue, kA, kA);
-  limits_.tracks[overdue] = model_->overdue(kA, kSecond);
-  std::optional<std::int64_t> alarm;
-  Detector detector(newJudge(limits_), kWindow, {}, [&](const Verdict& verdict) {
-    if (verdict.changed && verdict.alarm) {
-      alarm = verdict.window->start;
-    }
-  });
-  std::int64_t now = 0;
-  for (; now < 10 * kSecond; now += kPeriod) {
-    detector.add({now, kA});
-  }
-  for (int i = 0; i < 30; ++i) {
-    detector.add({now += 100 * kMillisecond, kB});
-  }
-  ASSERT_TRUE(alarm.has_value());
-  EXPECT_LT(*alarm, 12 * kSecond);
-}
-
 TEST_F(EvidenceJudgeTest, WhoDoesNotSubscribeIsASuspicionAndHidesNobody) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, 100 * kSecond);
+  limit(kOverdue, kA) = model_->overdue(kA, 100 * kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   judge->add({0, kB});
@@ -491,9 +424,7 @@ TEST_F(EvidenceJudgeTest, WhoDoesNotSubscribeIsASuspicionAndHidesNobody) {
   EXPECT_EQ(missing.evidence, "connections");
   ASSERT_EQ(missing.suspects.size(), 2U);
   EXPECT_EQ(missing.suspects[0].id, kB) << "kA is near its limit, and no more";
-  Acceptances deaf;
-  deaf.add(accepted("/b", "/x", Kind::kUnsubscribed));
-  judge->accept(deaf);
+  judge->accept(allOf({accepted("/b", "/x", Kind::kUnsubscribed)}));
   EXPECT_FALSE(judgeAt(*judge, 63 * kSecond).suspicious);
   judge->accept({});
   const Judgement death = judgeAt(*judge, 101 * kSecond, NameSuspects::kIfUnusual);
@@ -506,7 +437,7 @@ TEST_F(EvidenceJudgeTest, WhoDoesNotSubscribeIsASuspicionAndHidesNobody) {
 }
 
 TEST_F(EvidenceJudgeTest, ARestartForgetsWhatWasSeen) {
-  limits_.tracks[track(kOverdue, kA, kA)] = 1;
+  limit(kOverdue, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   EXPECT_TRUE(judgeAt(*judge, 100 * kSecond).abnormal);
@@ -522,19 +453,20 @@ TEST_F(EvidenceJudgeTest, RefusesLimitsOfAnotherModel) {
 
 class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
  protected:
+  EvidenceJudgeOfStrangersTest() { heard_ = std::make_shared<Vocabulary>(model_->vocabulary()); }
+  // Whether it is news that a node logs, at a level.
+  bool isNews(core::Judge& judge, const std::string& source, const std::string& level) {
+    return judge.add({kSecond, heard_->intern({source, "/rosout", "rosgraph_msgs/Log" + level})})
+        ->unknown;
+  }
   // A is silent, and is suspected; before, an unknown sender was heard.
-  std::vector<Suspect> suspectsAfter(const EventType& unknown, std::int64_t ago,
-                                     bool usual_sender = true) {
-    heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
+  std::vector<Suspect> suspectsAfter(const EventType& unknown, std::int64_t ago) {
     const EventId id = heard_->intern(unknown);
-    limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-    const std::unique_ptr<core::Judge> judge =
-        makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+    limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+    const std::unique_ptr<core::Judge> judge = newJudge(limits_);
     const std::int64_t end = 5 * kSecond;
     judge->add({kSecond, kA});
-    if (usual_sender) {
-      judge->add({kSecond, kB});
-    }
+    judge->add({kSecond, kB});
     const Event event{end - ago, id};
     Window window;
     window.start = end - kWindow;
@@ -544,15 +476,12 @@ class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
     }
     return judge->judge(window, end, NameSuspects::kIfUnusual).suspects;
   }
-  std::shared_ptr<Vocabulary> heard_;
 };
 
 TEST_F(EvidenceJudgeOfStrangersTest, AnUnknownSenderOnAKnownTopicIsTheFirstSuspectOfARate) {
-  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
   const EventId stranger = heard_->intern({"/rostopic", "/y", "T"});
-  limits_.tracks[track(kMore, kB, kB)] = 3;
-  const std::unique_ptr<core::Judge> judge =
-      makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+  limit(kMore, kB) = 3;
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   std::vector<Suspect> named;
   for (std::int64_t now = 0; now < 5 * kSecond; now += kWindow) {
     Window window{now, {}};
@@ -577,10 +506,8 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStranger) {
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {
-  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  const std::unique_ptr<core::Judge> judge =
-      makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({kSecond, kA});
   judge->add({kSecond, kB});
   Window window;
@@ -598,15 +525,13 @@ TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, WhatTrainingKnowsByNameIsNotUnknown) {
-  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
   const EventId debug = heard_->intern({"/planner", "/debug", "T"});
   const EventId other = heard_->intern({"/planner", "/other", "T"});
   const EventId level = heard_->intern({"/a", "/x", "T[level=8]"});
-  const auto graph = std::make_shared<SourceGraph>();
-  graph->addUnheard({"/planner", "/debug"});
-  graph->addUnheard({"/a", "/x"});  // in one start; in another one it was heard
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits_, kWindow, graph, heard_);
+  graph_->addUnheard({"/planner", "/debug"});
+  graph_->addUnheard({"/a", "/x"});  // in one start; in another one it was heard
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   EXPECT_FALSE(judge->add({1, debug})->unknown);
   EXPECT_TRUE(judge->add({2, other})->unknown);
@@ -614,15 +539,11 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhatTrainingKnowsByNameIsNotUnknown) {
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, WhoIsAcceptedIsNotUnknownUntilThatIsTakenBack) {
-  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
   const EventId id = heard_->intern({"/rostopic", "/y", "T"});
   const EventId other = heard_->intern({"/joystick", "/y", "T"});
-  const std::unique_ptr<core::Judge> judge =
-      makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   EXPECT_TRUE(judge->add({0, id})->unknown);
-  Acceptances all;
-  all.add(accepted("/rostopic", "/y", Kind::kStranger));
-  judge->accept(all);
+  judge->accept(allOf({accepted("/rostopic", "/y", Kind::kStranger)}));
   EXPECT_FALSE(judge->add({1, id})->unknown);
   EXPECT_TRUE(judge->add({1, other})->unknown);
   judge->accept({});
@@ -630,19 +551,14 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhoIsAcceptedIsNotUnknownUntilThatIsTakenBa
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, OfNodesThatLogAnewOnlyErrorsAreNews) {
-  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
-  const std::unique_ptr<core::Judge> judge =
-      makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
-  const auto isNews = [&](const std::string& source, const std::string& type) {
-    return judge->add({kSecond, heard_->intern({source, "/rosout", type})})->unknown;
-  };
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   for (const std::string level : {"1", "2", "4"}) {
-    EXPECT_FALSE(isNews("/a", "rosgraph_msgs/Log[level=" + level + "]")) << level;
-    EXPECT_TRUE(isNews("/new", "rosgraph_msgs/Log[level=" + level + "]")) << "who is it?";
+    EXPECT_FALSE(isNews(*judge, "/a", "[level=" + level + "]")) << level;
+    EXPECT_TRUE(isNews(*judge, "/new", "[level=" + level + "]")) << "who is it?";
   }
-  EXPECT_TRUE(isNews("/a", "rosgraph_msgs/Log[level=8]"));
-  EXPECT_TRUE(isNews("/a", "rosgraph_msgs/Log[level=16]"));
-  EXPECT_TRUE(isNews("/a", "rosgraph_msgs/Log")) << "by an encoding that tells no levels";
+  EXPECT_TRUE(isNews(*judge, "/a", "[level=8]"));
+  EXPECT_TRUE(isNews(*judge, "/a", "[level=16]"));
+  EXPECT_TRUE(isNews(*judge, "/a", "")) << "by an encoding that tells no levels";
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, ItIsSoForAsLongAsRatesCount) {
@@ -663,35 +579,18 @@ TEST_F(EvidenceJudgeOfStrangersTest, OtherUnknownEventsAreNamedLast) {
   }
 }
 
-TEST_F(EvidenceJudgeOfStrangersTest, WhoTakesThePlaceOfAnotherIsNoStranger) {
-  // A node with another name in every start.
-  const std::vector<Suspect> named = suspectsAfter({"/b_17", "/y", "T"}, 50 * kMillisecond, false);
-  ASSERT_EQ(named.size(), 2U);
-  EXPECT_EQ(named[0].id, kA);
-  EXPECT_EQ(heard_->at(named[1].id).source, "/b_17");
-  EXPECT_EQ(named[1].reason.topics, std::vector<std::string>{"/y"}) << "it has that of /b";
-}
-
 TEST_F(EvidenceJudgeOfStrangersTest, WhoWasInTheGraphOfTheTrainingMayLogAnew) {
-  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
-  const auto graph = std::make_shared<SourceGraph>();
-  graph->connect("/a", "/x", "/listener");
-  graph->connect("/talker", "/rosout", "/rosout");
-  graph->addUnheard({"/unheard", "/debug"});
-  graph->addLasting({"/lasting", "/gone"});
-  const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits_, kWindow, graph, heard_);
-  graph->connect("/late", "/rosout", "/rosout");  // at run time
-  const auto isNews = [&](const std::string& source, const std::string& level) {
-    return judge
-        ->add({kSecond,
-               heard_->intern({source, "/rosout", "rosgraph_msgs/Log[level=" + level + "]"})})
-        ->unknown;
-  };
+  graph_->connect("/a", "/x", "/listener");
+  graph_->connect("/talker", "/rosout", "/rosout");
+  graph_->addUnheard({"/unheard", "/debug"});
+  graph_->addLasting({"/lasting", "/gone"});
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  graph_->connect("/late", "/rosout", "/rosout");  // at run time
   for (const std::string source : {"/listener", "/talker", "/unheard", "/lasting"}) {
-    EXPECT_FALSE(isNews(source, "2")) << source;
-    EXPECT_TRUE(isNews(source, "8")) << source;
+    EXPECT_FALSE(isNews(*judge, source, "[level=2]")) << source;
+    EXPECT_TRUE(isNews(*judge, source, "[level=8]")) << source;
   }
-  EXPECT_TRUE(isNews("/late", "2")) << "training did not have it";
+  EXPECT_TRUE(isNews(*judge, "/late", "[level=2]")) << "training did not have it";
 }
 
 }  // namespace

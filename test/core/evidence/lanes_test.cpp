@@ -8,24 +8,16 @@
 #include <stdexcept>
 #include <vector>
 
-#include "recordings.h"
 #include "self_awareness/core/verdict/detector.h"
+#include "tracks.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr std::int64_t kPeriod = 200 * kMillisecond;
-
-Statistics counts(unsigned seed) {
-  const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
-  return countsOf({later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)},
-                  2);
-}
-
 class LanesTest : public testing::Test {
  protected:
   Shares sharesOf(std::size_t track, double share) {
-    tracks_.assign(model_->tracks().size(), 0);
+    tracks_ = allTracks(*model_, 0);
     tracks_.at(track) = share;
     return {tracks_, {}};
   }
@@ -39,7 +31,8 @@ class LanesTest : public testing::Test {
     return window;
   }
 
-  std::shared_ptr<const Model> model_ = std::make_shared<Model>(watch(counts(1), counts(2)));
+  std::shared_ptr<const Model> model_ =
+      std::make_shared<Model>(watch(startOf(followed(1), 1), startOf(followed(2), 2)));
   std::vector<double> tracks_;
 };
 
@@ -81,10 +74,7 @@ TEST_F(LanesTest, TheyAgreeWithTheScore) {
         double& score = lowest[start < 15 * kSecond ? 0 : start < 20 * kSecond ? 1 : 2];
         score = std::min(score, *verdict.score);
       });
-  Events asked = irregular(kA, 0, 20 * kSecond, kPeriod, 3);
-  for (const Event& event : together({asked, answers(kB, asked, 20 * kMillisecond)})) {
-    detector.add(event);
-  }
+  addAll(detector, followed(3, 20 * kSecond));
   detector.advance(30 * kSecond);  // both are silent
   detector.finish();
   EXPECT_LT(lowest[2], -1);

@@ -71,12 +71,54 @@ inline Events answers(EventId id, const Events& asked, std::int64_t delay) {
   return events;
 }
 
+/// A comes at random, about every 200 ms, and B so much after it [ns].
+inline Events followed(unsigned seed, std::int64_t length = 100 * kSecond,
+                       std::int64_t delay = 20 * kMillisecond) {
+  const Events asked = irregular(kA, 0, length, 200 * kMillisecond, seed);
+  return together({asked, answers(kB, asked, delay)});
+}
+
+/// So many event types that have nothing to do with each other, all at random.
+inline Events atRandom(std::size_t types, std::int64_t start, std::int64_t length,
+                       std::int64_t gap, unsigned seed) {
+  Events events;
+  for (EventId id = 0; id < types; ++id) {
+    events = together({events, irregular(id, start, start + length, gap, seed + id)});
+  }
+  return events;
+}
+
+/// The events but for some.
+template <typename Some>
+Events without(Events events, Some some) {
+  events.erase(std::remove_if(events.begin(), events.end(), some), events.end());
+  return events;
+}
+
 /// A recording of another start of the robot: the same events later.
 inline Events later(Events events, std::int64_t by = kStart) {
   for (Event& event : events) {
     event.stamp += by;
   }
   return events;
+}
+
+/// Adds all events to what takes them in one by one.
+template <typename To>
+void addAll(To& to, const Events& events) {
+  for (const Event& event : events) {
+    to.add(event);
+  }
+}
+
+/// So many event types, each of a component of its own.
+inline std::vector<EventType> numberedTypes(std::size_t number) {
+  std::vector<EventType> types;
+  for (std::size_t k = 0; k < number; ++k) {
+    const std::string name = "/c" + std::to_string(k);
+    types.push_back({name, name + "/out", "T"});
+  }
+  return types;
 }
 
 /// Counts of recordings with these event types.
@@ -89,9 +131,7 @@ inline Statistics countsOf(const std::vector<Events>& recordings,
   Trainer trainer(statistics, kWindow);
   for (const Events& events : recordings) {
     trainer.startRecording();
-    for (const Event& event : events) {
-      trainer.add(event);
-    }
+    addAll(trainer, events);
   }
   trainer.finish();
   return statistics;
@@ -102,6 +142,12 @@ inline Statistics countsOf(const std::vector<Events>& recordings,
                            std::size_t types = kTypes.size()) {
   return countsOf(recordings,
                   {kTypes.begin(), kTypes.begin() + static_cast<std::ptrdiff_t>(types)});
+}
+
+/// Counts of a start of the robot, with its number.
+inline Statistics startOf(const Events& events, std::int64_t number,
+                          std::size_t types = kTypes.size()) {
+  return countsOf({later(events, number * kStart)}, types);
 }
 
 /// Partners of an event type.
@@ -120,6 +166,11 @@ constexpr const char* kMore = "more";
 constexpr const char* kOwnGaps = "own gaps";
 constexpr const char* kPairs = "pairs";
 constexpr const char* kDeadlines = "deadlines";
+constexpr const char* kCompany = "company";
+constexpr const char* kAge = "age";
+constexpr const char* kLost = "lost";
+constexpr const char* kSize = "size";
+constexpr const char* kFrozen = "frozen";
 
 /// What a channel watches of one event type, or of two.
 inline Track trackOf(const std::string& channel, EventId to, EventId from) {

@@ -4,62 +4,41 @@
 
 #include <optional>
 #include <string>
-#include <vector>
+
+#include "accepted.h"
 
 namespace self_awareness::core {
 namespace {
 
-Acceptance accepted(const std::string& component, const std::string& topic,
-                    std::optional<Kind> kind = std::nullopt) {
-  Acceptance acceptance;
-  acceptance.component = component;
-  acceptance.topic = topic;
-  acceptance.kind = kind;
-  return acceptance;
-}
-
 TEST(Acceptances, WhatIsNamedMustAllFit) {
-  Acceptances accepted_now;
-  accepted_now.add(accepted("/rostopic*", "/cmd_vel", Kind::kStranger));
+  const Acceptances accepted_now = allOf({accepted("/rostopic*", "/cmd_vel", Kind::kStranger)});
   EXPECT_TRUE(accepted_now.covers("/rostopic_12", "/cmd_vel", Kind::kStranger));
   EXPECT_FALSE(accepted_now.covers("/rostopic_12", "/scan", Kind::kStranger));
   EXPECT_FALSE(accepted_now.covers("/joystick", "/cmd_vel", Kind::kStranger));
   EXPECT_FALSE(accepted_now.covers("/rostopic_12", "/cmd_vel", Kind::kSlow)) << "once known";
 }
 
-Acceptance mode(const std::vector<std::string>& together) {
-  Acceptance acceptance = accepted("", "", Kind::kNewMode);
-  acceptance.together = together;
-  return acceptance;
-}
-
 TEST(Acceptances, AModeCoversThatThoseOfItAreOffTogetherAndNoDeath) {
   Acceptances accepted_now;
-  accepted_now.add(mode({"/arm", "/laser", "/lidar", "/wheels"}));
+  accepted_now.add(acceptedMode({"/arm", "/laser", "/lidar", "/wheels"}));
   EXPECT_TRUE(accepted_now.coversMode({"/arm", "/laser", "/lidar", "/wheels"}));
   EXPECT_TRUE(accepted_now.coversMode({"/arm", "/lidar"}));
   EXPECT_FALSE(accepted_now.coversMode({"/arm", "/imu"}));
-  accepted_now.add(mode({"/imu"}));
+  accepted_now.add(acceptedMode({"/imu"}));
   EXPECT_FALSE(accepted_now.coversMode({"/arm", "/imu"})) << "they are of two modes";
   EXPECT_FALSE(accepted_now.covers("/arm", "/joints", Kind::kDied));
   EXPECT_FALSE(accepted_now.covers("/arm", "/joints", Kind::kSlow));
   EXPECT_FALSE(accepted_now.covers("", "", Kind::kAllSilent));
   EXPECT_TRUE(accepted_now.list().front().isAbout("/arm", "/joints"));
   EXPECT_FALSE(accepted_now.list().front().isAbout("/imu", "/imu/data"));
-  Acceptances death;
-  death.add(accepted("/arm", ""));
-  EXPECT_FALSE(death.coversMode({"/arm"}));
+  EXPECT_FALSE(allOf({accepted("/arm")}).coversMode({"/arm"}));
 }
 
 TEST(Acceptances, AModeIsTakenBackByItselfItsKindOrOneOfIt) {
-  const Acceptance arm = mode({"/arm", "/laser"});
-  const Acceptance imu = mode({"/imu", "/lidar"});
+  const Acceptance arm = acceptedMode({"/arm", "/laser"});
+  const Acceptance imu = acceptedMode({"/imu", "/lidar"});
   const auto left = [&](const Acceptance& pattern) {
-    Acceptances accepted_now;
-    accepted_now.add(arm);
-    accepted_now.add(imu);
-    accepted_now.add(arm);  // replaces it
-    accepted_now.add(accepted("/arm", ""));
+    Acceptances accepted_now = allOf({arm, imu, arm /* replaces it */, accepted("/arm")});
     accepted_now.remove(pattern);
     return accepted_now.list().size();
   };
@@ -70,31 +49,8 @@ TEST(Acceptances, AModeIsTakenBackByItselfItsKindOrOneOfIt) {
   EXPECT_EQ(left(accepted("/arm", "/joints")), 3U) << "a mode has no topic";
 }
 
-TEST(Acceptances, WhoIsSlowMayBeLateAndMayNotBeSilent) {
-  Acceptances accepted_now;
-  accepted_now.add(accepted("/camera", "", Kind::kSlow));
-  for (const Kind kind :
-       {Kind::kSlow, Kind::kFast, Kind::kLate, Kind::kEarly, Kind::kOutOfOrder}) {
-    EXPECT_TRUE(accepted_now.covers("/camera", "/image", kind)) << toString(kind);
-  }
-  EXPECT_FALSE(accepted_now.covers("/camera", "/image", Kind::kDied));
-  EXPECT_FALSE(accepted_now.covers("/camera", "/image", Kind::kNeverCame));
-}
-
-TEST(Acceptances, WhatMessagesAreLikeIsNoSilenceAndNoTime) {
-  Acceptances accepted_now;
-  accepted_now.add(accepted("/camera", "", Kind::kOtherSize));
-  for (const Kind kind : {Kind::kStale, Kind::kLossy, Kind::kOtherSize, Kind::kStuck}) {
-    EXPECT_TRUE(accepted_now.covers("/camera", "/image", kind)) << toString(kind);
-  }
-  for (const Kind kind : {Kind::kDied, Kind::kNeverCame, Kind::kSlow, Kind::kStranger}) {
-    EXPECT_FALSE(accepted_now.covers("/camera", "/image", kind)) << toString(kind);
-  }
-}
-
 TEST(Acceptances, OfConnectionsTheTopicIsTheOneThatIsNotSubscribedTo) {
-  Acceptances accepted_now;
-  accepted_now.add(accepted("/faces", "/image", Kind::kUnsubscribed));
+  const Acceptances accepted_now = allOf({accepted("/faces", "/image", Kind::kUnsubscribed)});
   EXPECT_TRUE(accepted_now.covers("/faces", "/image", Kind::kUnsubscribed));
   EXPECT_FALSE(accepted_now.covers("/faces", "/depth", Kind::kUnsubscribed));
   EXPECT_FALSE(accepted_now.covers("/faces", "/image", Kind::kDied));
@@ -102,8 +58,7 @@ TEST(Acceptances, OfConnectionsTheTopicIsTheOneThatIsNotSubscribedTo) {
 
 TEST(Acceptances, WhoMayBeSilentMayDoAnything) {
   for (const std::optional<Kind>& kind : {std::optional<Kind>(), {Kind::kDied}}) {
-    Acceptances accepted_now;
-    accepted_now.add(accepted("", "/image", kind));
+    const Acceptances accepted_now = allOf({accepted("", "/image", kind)});
     EXPECT_TRUE(accepted_now.covers("/camera", "/image", Kind::kDied));
     EXPECT_TRUE(accepted_now.covers("/camera", "/image", Kind::kSlow));
     EXPECT_FALSE(accepted_now.covers("/camera", "/info", Kind::kSlow));
@@ -136,11 +91,9 @@ TEST(Acceptances, EachIsThereOnceAndTakenBack) {
 }
 
 TEST(Acceptances, AllThatFitsIsTakenBack) {
-  Acceptances all;
-  all.add(accepted("/camera", "/image", Kind::kSlow));
-  all.add(accepted("/camera", "", Kind::kStale));
-  all.add(accepted("/cam*", "/image"));
-  all.add(accepted("", "/image", Kind::kSlow));
+  const Acceptances all =
+      allOf({accepted("/camera", "/image", Kind::kSlow), accepted("/camera", "", Kind::kStale),
+             accepted("/cam*", "/image"), accepted("", "/image", Kind::kSlow)});
   Acceptances left = all;
   EXPECT_EQ(left.remove(accepted("/camera", "")).size(), 2U);
   EXPECT_EQ(left.list().size(), 2U) << "wider ones stay";

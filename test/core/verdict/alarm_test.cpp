@@ -42,6 +42,23 @@ class AlarmsTest : public testing::Test {
     return ended;
   }
 
+  /// The next window of an alarm, in which the machine is busy, or somebody silent.
+  void addBusy(const Suspect& blamed, const Busy& busy) {
+    Verdict next = verdict(kAlarm, {blamed});
+    next.busy = busy;
+    add(next);
+  }
+  void addSilent(const Silent& silent) {
+    Verdict next = verdict(kAlarm, {suspect(1, Kind::kDied)});
+    next.silent = silent;
+    add(next);
+  }
+  void expectBlamed(const std::string& culprit, Kind kind) const {
+    ASSERT_TRUE(alarms_.standing());
+    EXPECT_EQ(alarms_.standing()->culprit, culprit);
+    EXPECT_EQ(toString(alarms_.standing()->kind), toString(kind));
+  }
+
   Vocabulary vocabulary_;
   Window window_{kStart, {}};
   Alarms alarms_;
@@ -103,77 +120,55 @@ TEST_F(AlarmsTest, ASuspicionThatAnAlarmLeavesIsAboutTheSame) {
   add(verdict(kAlarm, {suspect(1, Kind::kSlow)}));
   add(verdict(kSuspicion));
   EXPECT_EQ(alarms_.standing()->level, Alarm::Level::kSuspicion);
-  EXPECT_EQ(alarms_.standing()->culprit, "/b");
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kSlow);
+  expectBlamed("/b", Kind::kSlow);
   EXPECT_EQ(alarms_.standing()->evidence, "");
   EXPECT_TRUE(alarms_.standing()->suspects.empty());
   add(verdict(kSuspicion, {suspect(0, Kind::kFast)}));
-  EXPECT_EQ(alarms_.standing()->culprit, "/a");
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kFast);
+  expectBlamed("/a", Kind::kFast);
 }
 
 TEST_F(AlarmsTest, WhereTheMachineIsBusyNobodyIsToBlame) {
-  Verdict busy = verdict(kAlarm, {suspect(1, Kind::kLate)});
-  busy.busy = Busy{12, 26};
-  add(busy);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
-  EXPECT_EQ(alarms_.standing()->culprit, "");
+  addBusy(suspect(1, Kind::kLate), {12, 26});
+  expectBlamed("", Kind::kBusyMachine);
   EXPECT_EQ(alarms_.standing()->busy->late, 12U);
 }
 
 TEST_F(AlarmsTest, ABusyMachineDoesNotExcuseWhoDied) {
-  Verdict busy = verdict(kAlarm, {suspect(1, Kind::kDied)});
-  busy.busy = Busy{12, 26};
-  add(busy);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kDied);
-  EXPECT_EQ(alarms_.standing()->culprit, "/b");
+  addBusy(suspect(1, Kind::kDied), {12, 26});
+  expectBlamed("/b", Kind::kDied);
   EXPECT_TRUE(alarms_.standing()->busy);
 }
 
 TEST_F(AlarmsTest, WhatBeganBeforeAnExcuseStaysWhatItWas) {
-  const std::vector<Suspect> dead{suspect(1, Kind::kDied)};
-  const std::vector<Suspect> slow{suspect(1, Kind::kSlow)};
   const std::int64_t later = kStart + 400 * kWindow;
   for (const bool mode : {false, true}) {
     alarms_ = {};
-    add(verdict(kAlarm, dead));
-    Verdict silent = verdict(kAlarm, dead);
-    silent.silent = Silent{{}, {"/a", "/b"}, later, mode};
-    add(silent);
-    EXPECT_EQ(alarms_.standing()->kind, Kind::kDied);
-    EXPECT_EQ(alarms_.standing()->culprit, "/b");
+    add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+    addSilent({{}, {"/a", "/b"}, later, mode});
+    expectBlamed("/b", Kind::kDied);
   }
   alarms_ = {};
-  add(verdict(kAlarm, slow));
-  Verdict busy = verdict(kAlarm, slow);
-  busy.busy = Busy{5, 9, 0, later};
-  add(busy);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kSlow);
-  EXPECT_EQ(alarms_.standing()->culprit, "/b");
+  add(verdict(kAlarm, {suspect(1, Kind::kSlow)}));
+  addBusy(suspect(1, Kind::kSlow), {5, 9, 0, later});
+  expectBlamed("/b", Kind::kSlow);
 }
 
 TEST_F(AlarmsTest, WhoIsDeadOnceTheMachineIsFreeIsToBlame) {
-  Verdict busy = verdict(kAlarm, {suspect(1, Kind::kLate)});
-  busy.busy = Busy{12, 26};
-  add(busy);
+  addBusy(suspect(1, Kind::kLate), {12, 26});
   EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
   Suspect dead = suspect(0, Kind::kDied);
   add(verdict(kAlarm, {dead}));
   EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine) << "within its limit";
   dead.abnormal = true;
   add(verdict(kAlarm, {dead}));
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kDied);
-  EXPECT_EQ(alarms_.standing()->culprit, "/a");
+  expectBlamed("/a", Kind::kDied);
 }
 
 TEST_F(AlarmsTest, WhoWasSilentFirstIsNotToBlameWhereAllAre) {
   add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
   EXPECT_EQ(alarms_.standing()->culprit, "/b");
-  Verdict all = verdict(kAlarm, {suspect(1, Kind::kDied)});
-  all.silent = Silent{{}, {"/a", "/b"}, kStart};
-  add(all);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kAllSilent);
-  EXPECT_EQ(alarms_.standing()->culprit, "");
+  addSilent({{}, {"/a", "/b"}, kStart});
+  expectBlamed("", Kind::kAllSilent);
   EXPECT_EQ(alarms_.standing()->reason, "everything fell silent: 2 components");
 }
 
@@ -183,8 +178,7 @@ TEST_F(AlarmsTest, WhereSomeStoppedTogetherItIsANewModeAndNobodyIsToBlame) {
   mode.evidence = "new mode";
   mode.silent = Silent{{}, {"/a", "/b", "/c", "/d", "/e"}, kStart, true};
   add(mode);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kNewMode);
-  EXPECT_EQ(alarms_.standing()->culprit, "");
+  expectBlamed("", Kind::kNewMode);
   EXPECT_EQ(alarms_.standing()->reason,
             "/a, /b, /c and 2 more stopped together, and others go on: a mode that training did "
             "not show, or something that they share");
@@ -209,14 +203,10 @@ TEST_F(AlarmsTest, WhoStopsOnABusyMachineIsInANewModeOnceThatIsFree) {
 
 TEST_F(AlarmsTest, ComputersThatFellSilentAreNamedAndNobodyIsToBlame) {
   add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
-  Verdict silent = verdict(kAlarm, {suspect(1, Kind::kDied)});
-  silent.silent = Silent{{"base"}, {"/a", "/b"}, kStart};
-  add(silent);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kAllSilent);
-  EXPECT_EQ(alarms_.standing()->culprit, "");
+  addSilent({{"base"}, {"/a", "/b"}, kStart});
+  expectBlamed("", Kind::kAllSilent);
   EXPECT_EQ(alarms_.standing()->reason, "everything on host base fell silent: 2 nodes");
-  silent.silent = Silent{{"arm", "base", "head"}, {"/a", "/b", "/c"}, kStart};
-  add(silent);
+  addSilent({{"arm", "base", "head"}, {"/a", "/b", "/c"}, kStart});
   add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
   EXPECT_EQ(alarms_.standing()->reason,
             "everything on hosts arm, base and head fell silent: 3 nodes");
@@ -224,11 +214,8 @@ TEST_F(AlarmsTest, ComputersThatFellSilentAreNamedAndNobodyIsToBlame) {
 
 TEST_F(AlarmsTest, WhoDiedOnAnotherComputerBeforeIsStillToBlame) {
   add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
-  Verdict silent = verdict(kAlarm, {suspect(1, Kind::kDied)});
-  silent.silent = Silent{{"base"}, {"/a", "/c"}, kStart};
-  add(silent);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kDied);
-  EXPECT_EQ(alarms_.standing()->culprit, "/b");
+  addSilent({{"base"}, {"/a", "/c"}, kStart});
+  expectBlamed("/b", Kind::kDied);
   EXPECT_EQ(alarms_.standing()->silent->hosts, std::vector<std::string>{"base"});
 }
 

@@ -180,15 +180,6 @@ TEST_F(DetectorTest, AStepOfTheClockStartsANewRecordingWithoutAnAlarm) {
   }
 }
 
-TEST_F(DetectorTest, ALateEventCountsInTheOpenWindow) {
-  Detector detector = makeDetector(0.5);
-  detector.add({1000 * kSecond + 150 * kMillisecond, 2});
-  EXPECT_TRUE(detector.add({1000 * kSecond + 90 * kMillisecond, 2}));
-  detector.finish();
-  ASSERT_EQ(seen_.size(), 1U);
-  EXPECT_EQ(seen_.front().start, 1000 * kSecond + 100 * kMillisecond);
-}
-
 // By the paper's judge: the window has one score.
 TEST_F(DetectorTest, ANewComponentHoldsAlarmsOffAndLetsAStandingOneStand) {
   Detector detector = makeDetector(1.5);

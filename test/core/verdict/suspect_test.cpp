@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 namespace self_awareness::core {
 namespace {
 
@@ -29,14 +27,6 @@ TEST(Suspect, AKindIsFoundByItsName) {
   EXPECT_EQ(kindOf("none of them"), std::nullopt);
   EXPECT_TRUE(isMissing(Kind::kNeverCame));
   EXPECT_FALSE(isMissing(Kind::kFast));
-}
-
-TEST(Suspect, WhatIsNotKnownIsNoNumber) {
-  const Reason reason;
-  for (const double value :
-       {reason.value, reason.usual, reason.usual_shortest, reason.usual_longest, reason.lasted}) {
-    EXPECT_TRUE(std::isnan(value));
-  }
 }
 
 }  // namespace

@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "../recordings.h"
+#include "../judged.h"
+#include "../tracks.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -22,35 +22,32 @@ Events robot(std::int64_t length, unsigned seed) {
 }
 
 class EvidenceBlameTest : public testing::Test {
- protected:
-  EvidenceBlameTest() {
-    for (const Event& event : robot(10 * kSecond, 3)) {
-      add(event);
-    }
-  }
+ public:
   void add(const Event& event) {
     scorer_.add(event);
     events_.add(event, scorer_.stalled());
     last_ = event.stamp;
   }
+
+ protected:
+  EvidenceBlameTest() { addAll(*this, robot(10 * kSecond, 3)); }
+  /// Goes on as the blame of another model, once it has heard this.
+  void restart(const Watched& watched, const Events& heard) {
+    model_ = std::make_shared<Model>(watched);
+    scorer_ = Scorer(model_, kWindow);
+    events_ = RecentEvents(model_->size());
+    addAll(*this, heard);
+  }
   // Names the suspects when tracks have reached these shares of their limits.
   std::vector<Suspect> suspects(const std::vector<std::pair<Track, double>>& reached,
                                 std::int64_t end, const Window& window = {}) {
-    std::vector<double> shares(model_->tracks().size(), 0);
+    std::vector<double> shares = allTracks(*model_, 0);
     for (const auto& [track, share] : reached) {
-      shares.at(indexOf(model_->tracks(), channelName(track), track.to, track.from)) = share;
+      ofTrack(shares, *model_, channelName(track), track.to, track.from) = share;
     }
     scorer_.closeWindow(end);
     return Blame(model_, std::make_shared<Upstream>(model_->components(), graph_))
         .suspects(shares, scorer_, events_, window);
-  }
-  static std::vector<EventId> ids(const std::vector<Suspect>& suspects) {
-    std::vector<EventId> ids;
-    ids.reserve(suspects.size());
-    for (const Suspect& suspect : suspects) {
-      ids.push_back(suspect.id);
-    }
-    return ids;
   }
   static Track overdue(EventId id) { return trackOf(kOverdue, id, id); }
 
@@ -71,7 +68,7 @@ TEST_F(EvidenceBlameTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
   ASSERT_LT(model_->logSurvival(kC, end - *scorer_.heard().lastSeen(kC)),
             model_->logSurvival(kA, end - *scorer_.heard().lastSeen(kA)));
   const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}, {overdue(kC), 1.2}}, end);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kC, kA}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kC, kA}));
   for (const Suspect& suspect : named) {
     EXPECT_EQ(suspect.reason.kind, Kind::kDied);
     EXPECT_NEAR(suspect.reason.value, 5, 0.5);
@@ -79,39 +76,19 @@ TEST_F(EvidenceBlameTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
   }
 }
 
-TEST_F(EvidenceBlameTest, SaysOfASilentOneWhatWasMeasuredInTraining) {
-  const Suspect silent = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond).at(0);
-  EXPECT_DOUBLE_EQ(silent.reason.usual * 1e9, model_->meanGap(kA));
-  char text[100];
-  std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f s, at most %.3f s",
-                silent.reason.value, silent.reason.usual, toSeconds(model_->longestGap(kA)));
-  EXPECT_EQ(silent.reason.words, text);
-}
-
 TEST_F(EvidenceBlameTest, TheRootOfTheSilentComesBeforeItsVictims) {
   graph_->connect("/a", "/a/out", "/b");
   graph_->connect("/b", "/b/out", "/c");
   const std::vector<Suspect> named =
       suspects({{overdue(kA), 1.1}, {overdue(kB), 1.5}, {overdue(kC), 3}}, last_ + 5 * kSecond);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB, kC}));
-}
-
-TEST_F(EvidenceBlameTest, InALoopTheShorterWayDecides) {
-  graph_->connect("/b", "/b/out", "/a");
-  graph_->connect("/a", "/a/out", "/c");
-  graph_->connect("/c", "/c/out", "/b");
-  const std::int64_t end = last_ + 5 * kSecond;
-  EXPECT_EQ(ids(suspects({{overdue(kC), 1.5}, {overdue(kA), 1.5}}, end)),
-            (std::vector<EventId>{kA, kC}));
-  EXPECT_EQ(ids(suspects({{overdue(kA), 1.5}, {overdue(kB), 1.5}}, end)),
-            (std::vector<EventId>{kB, kA}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kB, kC}));
 }
 
 TEST_F(EvidenceBlameTest, ARootThatIsNearItsLimitIsNamedAlready) {
   graph_->connect("/a", "/a/out", "/b");
   const std::int64_t end = last_ + 5 * kSecond;
   const std::vector<Suspect> named = suspects({{overdue(kA), 0.8}, {overdue(kB), 1.5}}, end);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kB}));
   EXPECT_FALSE(named[0].abnormal);
   EXPECT_TRUE(named[1].abnormal);
 }
@@ -146,29 +123,19 @@ TEST_F(EvidenceBlameTest, WhoDoesWhatIsUsualIsNoSuspect) {
   ASSERT_LT(model_->logSurvival(kA, end - *scorer_.heard().lastSeen(kA)),
             std::log(model_->tuning().rare_silence));
   const Track abnormal = trackOf(kMore, kC, kC);
-  EXPECT_EQ(ids(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end)), (std::vector<EventId>{kC}));
-  EXPECT_EQ(ids(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end + 1)),
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end)),
+            (std::vector<EventId>{kC}));
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end + 1)),
             (std::vector<EventId>{kA, kC}));
   graph_->connect("/a", "/a/out", "/c");
-  EXPECT_EQ(ids(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end)), (std::vector<EventId>{kC}))
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end)),
+            (std::vector<EventId>{kC}))
       << "upstream or not";
-}
-
-TEST_F(EvidenceBlameTest, LateAnswersAreWordedByWhatTheirSumSaw) {
-  for (int i = 0; i < 12; ++i) {
-    const std::int64_t stamp = last_ + 100 * kMillisecond;
-    add({stamp, kA});
-    add({stamp + 70 * kMillisecond, kB});
-  }
-  const Suspect late = suspects({{trackOf(kPairs, kB, kA), 1.5}}, last_ + kMillisecond).at(0);
-  EXPECT_EQ(late.reason.words,
-            "50.0 ms later than usual 12 times of 12 after /a /x T in the last 1.9 s, usually "
-            "0.020 s");
 }
 
 TEST_F(EvidenceBlameTest, ALateAnswererIsNamedBeforeTheOneThatAsks) {
   const std::vector<Suspect> named = suspects({{trackOf(kPairs, kB, kA), 1.5}}, last_ + kWindow);
-  ASSERT_EQ(ids(named), std::vector<EventId>{kB});
+  ASSERT_EQ(idsOf(named), std::vector<EventId>{kB});
   EXPECT_EQ(named.front().reason.kind, Kind::kOutOfOrder) << "none of its delays was unusual";
   EXPECT_EQ(named.front().reason.after, toString(kTypes[kA]));
   EXPECT_NEAR(named.front().reason.value, 0.020, 1e-9);
@@ -185,20 +152,12 @@ Events chain(std::int64_t start, std::int64_t length, std::int64_t delay, unsign
 class EvidenceBlameOfAChainTest : public EvidenceBlameTest {
  protected:
   EvidenceBlameOfAChainTest() {
-    Watched watched = watch(countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)}),
-                            countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)}));
-    model_ = std::make_shared<Model>(watched);
-    scorer_ = Scorer(model_, kWindow);
-    events_ = RecentEvents(model_->size());
-    for (const Event& event : chain(0, 20 * kSecond, 20 * kMillisecond, 3)) {
-      add(event);
-    }
+    restart(watch(countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)}),
+                  countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)})),
+            chain(0, 20 * kSecond, 20 * kMillisecond, 3));
   }
   void addLate() {
-    for (const Event& event :
-         chain(last_ + 100 * kMillisecond, 2 * kSecond, 80 * kMillisecond, 4)) {
-      add(event);
-    }
+    addAll(*this, chain(last_ + 100 * kMillisecond, 2 * kSecond, 80 * kMillisecond, 4));
   }
   static Track delay(EventId to, EventId from) { return trackOf(kPairs, to, from); }
 };
@@ -207,20 +166,20 @@ TEST_F(EvidenceBlameOfAChainTest, TheOneWhoseDelayGrewComesBeforeWhoFollowsItAsU
   addLate();
   const std::vector<Suspect> named =
       suspects({{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}}, last_ + kMillisecond);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
 }
 
 TEST_F(EvidenceBlameOfAChainTest, WhoDoesNotFollowAsUsualIsToBlameItself) {
   addLate();
   const std::vector<Suspect> named = suspects(
       {{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}, {delay(kC, kB), 1.5}}, last_ + kMillisecond);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kC, kB}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kC, kB}));
 }
 
 TEST_F(EvidenceBlameOfAChainTest, TheOneBetweenIsNamedEvenIfItsOwnDelaysAreNotJudged) {
   addLate();
   const std::vector<Suspect> named = suspects({{delay(kC, kA), 1.5}}, last_ + kMillisecond);
-  ASSERT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+  ASSERT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
   EXPECT_FALSE(named[0].abnormal);
   EXPECT_EQ(named[0].reason.after, toString(kTypes[kA]));
   EXPECT_NEAR(named[0].reason.value, 0.080, 1e-9);
@@ -228,13 +187,13 @@ TEST_F(EvidenceBlameOfAChainTest, TheOneBetweenIsNamedEvenIfItsOwnDelaysAreNotJu
 
 TEST_F(EvidenceBlameOfAChainTest, WhoIsInTimeIsNotNamedBetween) {
   const std::vector<Suspect> named = suspects({{delay(kC, kA), 1.5}}, last_ + kMillisecond);
-  EXPECT_EQ(ids(named), std::vector<EventId>{kC});
+  EXPECT_EQ(idsOf(named), std::vector<EventId>{kC});
 }
 
 TEST_F(EvidenceBlameOfAChainTest, WithoutAGraphTheRootOfTheSilentIsWhoIsFollowed) {
   const std::vector<Suspect> named =
       suspects({{overdue(kC), 3}, {overdue(kB), 1.5}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB, kC}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kB, kC}));
 }
 
 TEST_F(EvidenceBlameOfAChainTest, WhoIsToBlameForASilenceComesBeforeIt) {
@@ -242,7 +201,7 @@ TEST_F(EvidenceBlameOfAChainTest, WhoIsToBlameForASilenceComesBeforeIt) {
   const std::int64_t end = *scorer_.heard().lastSeen(kC) + 2 * model_->longestGap(kC);
   const std::vector<Suspect> named =
       suspects({{overdue(kC), 0.9}, {trackOf(kFewer, kB, kB), 1.5}}, end);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
 }
 
 // A is a timer, B answers to every second message after 60 ms, and C often comes at random.
@@ -254,25 +213,20 @@ Events everySecond(std::int64_t start, std::int64_t length, std::int64_t period,
 
 TEST_F(EvidenceBlameTest, WhoAnswersEverySecondMessageIsNotToBlameWhileTheseComeAtHalfTheRate) {
   constexpr std::int64_t kPeriod = 100 * kMillisecond;
-  model_ =
-      std::make_shared<Model>(watch(countsOf({everySecond(0, 100 * kSecond, kPeriod, 1)}),
-                                    countsOf({everySecond(kStart, 100 * kSecond, kPeriod, 2)})));
-  scorer_ = Scorer(model_, kWindow);
-  events_ = RecentEvents(model_->size());
+  restart(watch(countsOf({everySecond(0, 100 * kSecond, kPeriod, 1)}),
+                countsOf({everySecond(kStart, 100 * kSecond, kPeriod, 2)})),
+          everySecond(0, 20 * kSecond, kPeriod, 3));
   graph_->connect("/a", "/x", "/b");
-  for (const Event& event : everySecond(0, 20 * kSecond, kPeriod, 3)) {
-    add(event);
-  }
   ASSERT_EQ(scorer_.heard().lastSeen(kB), 19960 * kMillisecond);
   ASSERT_EQ(scorer_.heard().lastSeen(kA), 19900 * kMillisecond);
   const std::vector<std::pair<Track, double>> reached{{overdue(kB), 1.2},
                                                       {trackOf(kFewer, kA, kA), 1.2}};
   add({20100 * kMillisecond, kA});
-  EXPECT_EQ(ids(suspects(reached, 20290 * kMillisecond)), (std::vector<EventId>{kA, kB}));
+  EXPECT_EQ(idsOf(suspects(reached, 20290 * kMillisecond)), (std::vector<EventId>{kA, kB}));
   add({20300 * kMillisecond, kA});
-  EXPECT_EQ(ids(suspects(reached, 20340 * kMillisecond)), (std::vector<EventId>{kA, kB}))
+  EXPECT_EQ(idsOf(suspects(reached, 20340 * kMillisecond)), (std::vector<EventId>{kA, kB}))
       << "it has time to answer";
-  EXPECT_EQ(ids(suspects(reached, 20400 * kMillisecond)), (std::vector<EventId>{kB, kA}));
+  EXPECT_EQ(idsOf(suspects(reached, 20400 * kMillisecond)), (std::vector<EventId>{kB, kA}));
 }
 
 // A asks about every 4 s, B answers after 0.4 s, and C comes often.
@@ -283,57 +237,38 @@ Events requests(std::int64_t length, unsigned seed) {
 }
 
 TEST_F(EvidenceBlameTest, WhoOwesAnAnswerIsNamedAsASilentOne) {
-  model_ = std::make_shared<Model>(watch(countsOf({requests(400 * kSecond, 1)}),
-                                         countsOf({later(requests(400 * kSecond, 2))})));
-  ASSERT_TRUE(isWatched(model_->tracks(), kDeadlines, kB, kA));
-  scorer_ = Scorer(model_, kWindow);
-  events_ = RecentEvents(model_->size());
-  for (const Event& event : requests(20 * kSecond, 3)) {
-    add(event);
-  }
+  restart(watch(startOf(requests(400 * kSecond, 1), 0), startOf(requests(400 * kSecond, 2), 1)),
+          requests(20 * kSecond, 3));
   add({last_ + kSecond, kA});
   const std::vector<Suspect> named = suspects(
       {{trackOf(kMore, kC, kC), 1.9}, {trackOf(kDeadlines, kB, kA), 1.1}}, last_ + 2 * kSecond);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
   EXPECT_EQ(named.front().reason.kind, Kind::kDied);
   EXPECT_EQ(named.front().reason.words, "has not come for 2.00 s after /a /x T");
-}
-
-TEST_F(EvidenceBlameTest, ATypeThatComesTooOftenIsNamedWithNumbers) {
-  const std::vector<Suspect> named = suspects({{trackOf(kMore, kC, kC), 1.5}}, last_ + kWindow);
-  ASSERT_EQ(ids(named), std::vector<EventId>{kC});
-  EXPECT_EQ(named.front().reason.unit, unit::kHertz);
-  EXPECT_EQ(named.front().reason.value, scorer_.heard().recentCount(kC) / 2.0);
-  EXPECT_GT(named.front().reason.usual_longest, named.front().reason.usual_shortest);
 }
 
 TEST_F(EvidenceBlameTest, SilentOnesComeBeforeUnusualOnes) {
   const std::vector<Suspect> named =
       suspects({{trackOf(kMore, kC, kC), 2}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kC}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kC}));
 }
 
 TEST_F(EvidenceBlameTest, OwnFaultsCountMoreThanDelaysAfterOthers) {
   // B's delays after A are unusual because A comes at another rate.
   const std::vector<Suspect> named =
       suspects({{trackOf(kPairs, kB, kA), 1.9}, {trackOf(kMore, kA, kA), 1.1}}, last_ + kWindow);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kB}));
 }
 
 TEST_F(EvidenceBlameTest, TheOrderOfItsOwnEventsIsAnOwnFault) {
   // A and B are of one component, and C's delays after B are unusual because of that.
   const std::vector<EventType> types{{"/a", "/x", "T"}, {"/a", "/y", "T"}, {"/c", "/z", "T"}};
-  model_ = std::make_shared<Model>(
-      watch(countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)}, types),
-            countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)}, types)));
-  scorer_ = Scorer(model_, kWindow);
-  events_ = RecentEvents(model_->size());
-  for (const Event& event : chain(0, 20 * kSecond, 20 * kMillisecond, 3)) {
-    add(event);
-  }
+  restart(watch(countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)}, types),
+                countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)}, types)),
+          chain(0, 20 * kSecond, 20 * kMillisecond, 3));
   const std::vector<Suspect> named =
       suspects({{trackOf(kPairs, kB, kA), 1.1}, {trackOf(kPairs, kC, kB), 1.9}}, last_ + kWindow);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
 }
 
 TEST_F(EvidenceBlameTest, UnknownEventsAreNamedLast) {
@@ -343,7 +278,7 @@ TEST_F(EvidenceBlameTest, UnknownEventsAreNamedLast) {
   }
   window.events.push_back({{last_, kA}, false, std::nullopt});
   const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond, window);
-  ASSERT_EQ(ids(named), (std::vector<EventId>{kA, 5, 4}));
+  ASSERT_EQ(idsOf(named), (std::vector<EventId>{kA, 5, 4}));
   EXPECT_EQ(named[1].reason.kind, Kind::kStranger);
   EXPECT_EQ(named[1].reason.value, 2);
   EXPECT_EQ(named[2].reason.value, 1);
@@ -358,49 +293,35 @@ TEST_F(EvidenceBlameTest, NoMoreThanFiveAreNamed) {
 }
 
 TEST_F(EvidenceBlameTest, FurtherComponentsFollowIfTheirEvidenceAloneIsAbnormal) {
-  Statistics counts;
-  for (const std::string name : {"/a", "/b", "/c", "/d", "/e", "/e", "/f", "/g"}) {
-    counts.intern({name, "/topic" + std::to_string(counts.size()), "T"});
-  }
+  std::vector<EventType> types;
   Events events;
-  for (EventId id = 0; id < counts.size(); ++id) {
+  for (const std::string name : {"/a", "/b", "/c", "/d", "/e", "/e", "/f", "/g"}) {
+    const auto id = static_cast<EventId>(types.size());
+    types.push_back({name, "/topic" + std::to_string(id), "T"});
     events = together({events, timer(id, 0, 100 * kSecond, (90 + 10 * id) * kMillisecond)});
   }
-  Trainer trainer(counts, kWindow);
-  for (const Event& event : events) {
-    trainer.add(event);
-  }
-  model_ = std::make_shared<Model>(watch(counts, {}));
-  scorer_ = Scorer(model_, kWindow);
-  events_ = RecentEvents(model_->size());
-  for (const Event& event : events) {
-    add(event);
-  }
+  restart(watch(countsOf({events}, types), {}), events);
   std::vector<std::pair<Track, double>> reached;
-  for (EventId id = 0; id < counts.size(); ++id) {
+  for (EventId id = 0; id < types.size(); ++id) {
     reached.emplace_back(overdue(id), id == 6 ? 0.9 : 1.5);
   }
   // The shortest gaps first; 5 is another type of a component that is named, 6 is near its limit.
   const std::vector<Suspect> named = suspects(reached, last_ + 3 * kSecond);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{0, 1, 2, 3, 4, 7}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{0, 1, 2, 3, 4, 7}));
   EXPECT_EQ(named.back().component, "/g");
   EXPECT_TRUE(named.back().abnormal);
 }
 
 TEST_F(EvidenceBlameTest, ATopicIsNamedIfItsSenderIsNotKnown) {
-  Statistics counts;
-  for (const EventType& type : kTypes) {
-    counts.intern({"", type.scope, type.type});
+  std::vector<EventType> types = kTypes;
+  for (EventType& type : types) {
+    type.source.clear();
   }
-  Trainer trainer(counts, kWindow);
-  for (const Event& event : robot(100 * kSecond, 1)) {
-    trainer.add(event);
-  }
-  model_ = std::make_shared<Model>(watch(counts, {}));
+  model_ = std::make_shared<Model>(watch(countsOf({robot(100 * kSecond, 1)}, types), {}));
   graph_->connect("/x", "/x/out", "/z");
   const std::vector<Suspect> named =
       suspects({{overdue(kA), 1.5}, {overdue(kC), 1.5}}, last_ + 5 * kSecond);
-  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kC}));
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kC}));
 }
 
 }  // namespace

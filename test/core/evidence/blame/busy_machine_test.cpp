@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../recordings.h"
+#include "../tracks.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -15,15 +15,10 @@ constexpr EventId kComponents = 9;
 
 // All at random but the last one, which answers the first one.
 Events robot(std::int64_t start, unsigned seed) {
-  Events events;
   const Attributes usual{ageClass(kMillisecond), sizeClass(100), Attributes::Step::kNext, false};
-  for (EventId id = 0; id + 1 < kComponents; ++id) {
-    const Events its = irregular(id, start, start + 60 * kSecond, 200 * kMillisecond, seed + id);
-    events = together({events, its});
-    if (id == 0) {
-      events = together({events, answers(kComponents - 1, its, 20 * kMillisecond)});
-    }
-  }
+  Events events = atRandom(kComponents - 1, start, 60 * kSecond, 200 * kMillisecond, seed);
+  const Events asked = without(events, [](const Event& event) { return event.id > 0; });
+  events = together({events, answers(kComponents - 1, asked, 20 * kMillisecond)});
   for (Event& event : events) {
     event.attributes = usual;
   }
@@ -33,9 +28,7 @@ Events robot(std::int64_t start, unsigned seed) {
 class BusyMachineTest : public testing::Test {
  protected:
   BusyMachineTest() {
-    for (const Event& event : robot(0, 300)) {
-      scorer_.add(event);
-    }
+    addAll(scorer_, robot(0, 300));
     scorer_.closeWindow(60 * kSecond);
   }
   /// Contents that changed for a minute change always.
@@ -44,28 +37,21 @@ class BusyMachineTest : public testing::Test {
     tuning.changing_time = 60;
     return tuning;
   }
-  static std::vector<EventType> types() {
-    std::vector<EventType> types;
-    for (EventId id = 0; id < kComponents; ++id) {
-      const std::string name = "/c" + std::to_string(id);
-      types.push_back({name, name + "/out", "T"});
-    }
-    return types;
-  }
   // The components from `first` on have these shares of their limits.
   std::optional<Busy> at(double share, EventId first, EventId number, bool abnormal = true,
                          const std::string& channel = kFewer) {
     scorer_.closeWindow(now_ += kWindow);
-    std::vector<double> shares(model_->tracks().size(), 0);
+    std::vector<double> shares = allTracks(*model_, 0);
     for (EventId id = first; id < first + number; ++id) {
-      shares.at(indexOf(model_->tracks(), channel, id, id)) = share;
+      ofTrack(shares, *model_, channel, id) = share;
     }
     return machine_.closeWindow(shares, scorer_, events_, abnormal);
   }
 
+  const std::vector<EventType> types_ = numberedTypes(kComponents);
   std::shared_ptr<const Model> model_ =
-      std::make_shared<Model>(watch(countsOf({robot(0, 100), robot(2 * kStart, 150)}, types()),
-                                    countsOf({robot(kStart, 200)}, types()), {}, withFrozen()));
+      std::make_shared<Model>(watch(countsOf({robot(0, 100), robot(2 * kStart, 150)}, types_),
+                                    countsOf({robot(kStart, 200)}, types_), {}, withFrozen()));
   Scorer scorer_{model_, kWindow};
   RecentEvents events_{model_->size()};
   BusyMachine machine_{model_};
@@ -137,7 +123,7 @@ TEST_F(BusyMachineTest, WhoIsSilentIsNotLate) {
 }
 
 TEST_F(BusyMachineTest, WhoSaysSomethingElseIsNotLate) {
-  for (const char* channel : {"age", "lost", "size", "frozen"}) {
+  for (const char* channel : {kAge, kLost, kSize, kFrozen}) {
     EXPECT_FALSE(at(1.2, 1, 5, true, channel)) << channel;
   }
 }
@@ -150,12 +136,12 @@ TEST_F(BusyMachineTest, WhoSendsTooOftenIsNotLate) {
 
 TEST_F(BusyMachineTest, WhoFollowsAnotherAsUsualIsNoFurtherOne) {
   ASSERT_TRUE(isWatched(model_->tracks(), kPairs, kComponents - 1, 0));
-  std::vector<double> shares(model_->tracks().size(), 0);
+  std::vector<double> shares = allTracks(*model_, 0);
   for (const EventId id : {0U, 1U, 2U, kComponents - 1}) {
-    shares.at(indexOf(model_->tracks(), kFewer, id, id)) = 1.2;
+    ofTrack(shares, *model_, kFewer, id) = 1.2;
   }
   EXPECT_FALSE(machine_.closeWindow(shares, scorer_, events_, true));
-  shares.at(indexOf(model_->tracks(), kFewer, 3, 3)) = 1.2;
+  ofTrack(shares, *model_, kFewer, 3) = 1.2;
   ASSERT_TRUE(machine_.closeWindow(shares, scorer_, events_, true));
 }
 

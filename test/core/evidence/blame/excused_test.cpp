@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../../verdict/accepted.h"
 #include "../attributed.h"
 #include "core/evidence/channel/scorer.h"
 
@@ -31,12 +32,7 @@ class ExcusedTest : public testing::Test {
  protected:
   /// The channels whose evidence against B, or about it, is left out.
   Names leftOut(std::optional<Kind> kind, const std::string& component = "/b") {
-    Acceptance acceptance;
-    acceptance.component = component;
-    acceptance.kind = kind;
-    Acceptances accepted;
-    accepted.add(acceptance);
-    excused_.accept(accepted);
+    excused_.accept(allOf({accepted(component, "", kind)}));
     std::vector<double> evidence(model_->tracks().size(), 1);
     excused_.leaveOut(scorer_.heard(), evidence);
     Names names;
@@ -69,7 +65,7 @@ TEST_F(ExcusedTest, AKindIsAcceptedWithWhatComesWithItAndNoMore) {
     }
   }
   const Names time{kFewer, kMore, kPairs};
-  const Names messages{"age", "lost", "size", "frozen"};
+  const Names messages{kAge, kLost, kSize, kFrozen};
   for (const Names* const part : {&time, &messages}) {
     for (const std::string& channel : *part) {
       EXPECT_EQ(all.count(channel), 1U) << channel << " is not watched: the test needs it";

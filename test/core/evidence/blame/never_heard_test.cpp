@@ -2,15 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "../recordings.h"
+#include "../judged.h"
+#include "../tracks.h"
 #include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/verdict/detector.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -28,11 +27,20 @@ Events start(std::optional<std::int64_t> c_starts, unsigned seed,
 
 class NeverHeardTest : public testing::Test {
  protected:
+  NeverHeardTest() { train({start(0, 1)}, {start(0, 7)}); }
   void train(const std::vector<Events>& first, const std::vector<Events>& second) {
     model_ = std::make_shared<Model>(watch(countsOf(first), countsOf(second)));
   }
   NeverHeard neverHeard(const Limits& limits = {}) const {
     return NeverHeard(*model_, limits, std::make_shared<Upstream>(model_->components(), graph_));
+  }
+  // It has heard these at its start.
+  NeverHeard neverHeardBut(const std::vector<EventId>& ids, const Limits& limits = {}) const {
+    NeverHeard never_heard = neverHeard(limits);
+    for (const EventId id : ids) {
+      never_heard.add({0, id});
+    }
+    return never_heard;
   }
   // The share after so much time in which only A was heard.
   static double shareAt(NeverHeard& never_heard, std::int64_t now) {
@@ -40,22 +48,15 @@ class NeverHeardTest : public testing::Test {
     return never_heard.share();
   }
   static std::vector<EventId> named(const NeverHeard& never_heard) {
-    std::vector<EventId> ids;
-    for (const Suspect& suspect : never_heard.suspects()) {
-      ids.push_back(suspect.id);
-    }
-    return ids;
+    return idsOf(never_heard.suspects());
   }
 
   // What the judge says once B has been silent for 30 s, and C was never heard.
   Judgement afterSilenceOfB() const {
-    Limits limits;
-    limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
-    limits.tracks[indexOf(model_->tracks(), kOverdue, kB, kB)] = 5;
+    Limits limits = allLimits(*model_, kNone);
+    ofTrack(limits.tracks, *model_, kOverdue, kB) = 5;
     const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits, kWindow, graph_);
-    for (const Event& event : start(std::nullopt, 3, 10 * kSecond)) {
-      judge->add(event);
-    }
+    addAll(*judge, start(std::nullopt, 3, 10 * kSecond));
     judge->add({40 * kSecond, kA});
     return judge->judge({40 * kSecond, {}}, 40 * kSecond, NameSuspects::kIfUnusual);
   }
@@ -66,9 +67,7 @@ class NeverHeardTest : public testing::Test {
 
 TEST_F(NeverHeardTest, WhatIsExcusedNeedNotCome) {
   train({start(14400 * kMillisecond, 1)}, {start(14600 * kMillisecond, 7)});
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
-  never_heard.add({50 * kMillisecond, kB});
+  NeverHeard never_heard = neverHeardBut({kA, kB});
   std::vector<bool> may_be_silent(model_->size(), false);
   may_be_silent[kC] = true;
   never_heard.excuse(may_be_silent);
@@ -82,9 +81,7 @@ TEST_F(NeverHeardTest, WhatIsExcusedNeedNotCome) {
 
 TEST_F(NeverHeardTest, WhatComesLateAsAlwaysIsNormalAndWhatDoesNotComeIsNot) {
   train({start(14400 * kMillisecond, 1)}, {start(14600 * kMillisecond, 7)});
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
-  never_heard.add({50 * kMillisecond, kB});
+  NeverHeard never_heard = neverHeardBut({kA, kB});
   EXPECT_EQ(shareAt(never_heard, 29 * kSecond), 0);  // due after 2 * 14.6 s
   const double due = shareAt(never_heard, 29300 * kMillisecond);
   EXPECT_GT(due, 0);
@@ -105,9 +102,7 @@ TEST_F(NeverHeardTest, WhatComesLateAsAlwaysIsNormalAndWhatDoesNotComeIsNot) {
 }
 
 TEST_F(NeverHeardTest, WhatComesAtOnceHasTimeUntilItIsDue) {
-  train({start(0, 1)}, {start(0, 7)});
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
+  NeverHeard never_heard = neverHeardBut({kA});
   EXPECT_EQ(shareAt(never_heard, 5 * kSecond), 0);
   EXPECT_GT(shareAt(never_heard, 6 * kSecond), 0);
   EXPECT_EQ(named(never_heard), (std::vector<EventId>{kB, kC}));
@@ -116,9 +111,7 @@ TEST_F(NeverHeardTest, WhatComesAtOnceHasTimeUntilItIsDue) {
 }
 
 TEST_F(NeverHeardTest, ItIsAnAlarmForAMinuteAndASuspicionFromThenOn) {
-  train({start(0, 1)}, {start(0, 7)});
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
+  NeverHeard never_heard = neverHeardBut({kA});
   EXPECT_GT(shareAt(never_heard, 66 * kSecond), 1);
   EXPECT_GT(shareAt(never_heard, 125 * kSecond), 1);
   EXPECT_EQ(shareAt(never_heard, 126 * kSecond), 1);
@@ -131,8 +124,7 @@ TEST_F(NeverHeardTest, ATopicOfANodeThatSaysOtherThingsIsASuspicionOnly) {
                     {{"/a", "/x", "T"}, {"/b", "/y", "T"}, {"/a", "/z", "T"}});
   };
   model_ = std::make_shared<Model>(watch(both(0, 1), both(0, 7)));
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
+  NeverHeard never_heard = neverHeardBut({kA});
   EXPECT_GT(shareAt(never_heard, 66 * kSecond), 1);
   EXPECT_EQ(named(never_heard), (std::vector<EventId>{kB, kC}));
   EXPECT_TRUE(never_heard.suspects()[0].abnormal);
@@ -142,9 +134,7 @@ TEST_F(NeverHeardTest, ATopicOfANodeThatSaysOtherThingsIsASuspicionOnly) {
 }
 
 TEST_F(NeverHeardTest, ALongSettlingTimeIsWaitedFor) {
-  train({start(0, 1)}, {start(0, 7)});
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
+  NeverHeard never_heard = neverHeardBut({kA});
   never_heard.closeWindow(30 * kSecond, 30 * kSecond);
   EXPECT_EQ(never_heard.share(), 0);
   never_heard.closeWindow(30 * kSecond + 1, 30 * kSecond);
@@ -153,8 +143,7 @@ TEST_F(NeverHeardTest, ALongSettlingTimeIsWaitedFor) {
 
 TEST_F(NeverHeardTest, WhatCameInSomeRecordingsOnlyIsNotExpected) {
   train({start(0, 1), start(std::nullopt, 4)}, {start(0, 7)});
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
+  NeverHeard never_heard = neverHeardBut({kA});
   shareAt(never_heard, 600 * kSecond);
   EXPECT_EQ(named(never_heard), std::vector<EventId>{kB});
 }
@@ -163,21 +152,15 @@ TEST_F(NeverHeardTest, WhatIsSlowHasTwiceItsLongestGap) {
   const Events slow = timer(kC, 0, 1200 * kSecond, 30 * kSecond);
   train({together({start(std::nullopt, 1, 1200 * kSecond), slow})},
         {together({start(std::nullopt, 7, 1200 * kSecond), slow})});
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
-  never_heard.add({0, kB});
+  NeverHeard never_heard = neverHeardBut({kA, kB});
   EXPECT_EQ(shareAt(never_heard, 60 * kSecond), 0);
   EXPECT_GT(shareAt(never_heard, 61 * kSecond), 0);
 }
 
 TEST_F(NeverHeardTest, WhoMayBeSilentIsNotDueBefore) {
-  train({start(0, 1)}, {start(0, 7)});
-  Limits limits;
-  limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
-  limits.tracks[indexOf(model_->tracks(), kOverdue, kC, kC)] = model_->overdue(kC, 100 * kSecond);
-  NeverHeard never_heard = neverHeard(limits);
-  never_heard.add({0, kA});
-  never_heard.add({0, kB});
+  Limits limits = allLimits(*model_, kNone);
+  ofTrack(limits.tracks, *model_, kOverdue, kC) = model_->overdue(kC, 100 * kSecond);
+  NeverHeard never_heard = neverHeardBut({kA, kB}, limits);
   EXPECT_EQ(shareAt(never_heard, 99 * kSecond), 0);
   EXPECT_GT(shareAt(never_heard, 101 * kSecond), 0);
   EXPECT_LT(shareAt(never_heard, 159 * kSecond), 1) << "a minute later, not four times as late";
@@ -187,8 +170,7 @@ TEST_F(NeverHeardTest, WhoMayBeSilentIsNotDueBefore) {
 TEST_F(NeverHeardTest, TooFewGapsSayNothing) {
   const Events rare = timer(kC, 0, 15 * kSecond, kSecond);  // 14 gaps in each half
   train({together({start(std::nullopt, 1), rare})}, {together({start(std::nullopt, 7), rare})});
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
+  NeverHeard never_heard = neverHeardBut({kA});
   shareAt(never_heard, 600 * kSecond);
   EXPECT_EQ(named(never_heard), std::vector<EventId>{kB});
 }
@@ -197,8 +179,7 @@ TEST_F(NeverHeardTest, RecordingsOfTheCalibrationCountToo) {
   train({start(7180, 1)}, {start(0, 7)});
   Limits limits;
   limits.firsts = {0, -1, 20 * kSecond};  // in one, B did not come
-  NeverHeard never_heard = neverHeard(limits);
-  never_heard.add({0, kA});
+  NeverHeard never_heard = neverHeardBut({kA}, limits);
   EXPECT_EQ(shareAt(never_heard, 40 * kSecond), 0);
   EXPECT_GT(shareAt(never_heard, 41 * kSecond), 0);
   EXPECT_EQ(named(never_heard), std::vector<EventId>{kC});
@@ -207,7 +188,6 @@ TEST_F(NeverHeardTest, RecordingsOfTheCalibrationCountToo) {
 }
 
 TEST_F(NeverHeardTest, TheFirstEventOfAnyIdIsTheStart) {
-  train({start(0, 1)}, {start(0, 7)});
   NeverHeard never_heard = neverHeard();
   EXPECT_EQ(shareAt(never_heard, 1000 * kSecond), 0);
   never_heard.add({1000 * kSecond, 99});
@@ -222,38 +202,30 @@ TEST_F(NeverHeardTest, TheFirstEventOfAnyIdIsTheStart) {
 }
 
 TEST_F(NeverHeardTest, TheRootComesFirst) {
-  train({start(0, 1)}, {start(0, 7)});
   graph_->connect("/c", "/z", "/b");
-  NeverHeard never_heard = neverHeard();
-  never_heard.add({0, kA});
+  NeverHeard never_heard = neverHeardBut({kA});
   shareAt(never_heard, 6 * kSecond);
   EXPECT_EQ(named(never_heard), (std::vector<EventId>{kC, kB}));
 }
 
 TEST_F(NeverHeardTest, TheJudgeSuspectsAndThenAlarms) {
-  train({start(0, 1)}, {start(0, 7)});
-  Limits limits;
-  limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
   std::optional<double> suspected;
   std::optional<double> raised;
   std::vector<Suspect> suspects;
   std::string evidence;
-  Detector detector(makeJudge(model_, limits, kWindow, graph_), kWindow, {},
-                    [&](const Verdict& verdict) {
-                      const double end = toSeconds(verdict.window->start + kWindow);
-                      if (verdict.suspicion && !suspected) {
-                        suspected = end;
-                      }
-                      if (verdict.alarm && !raised) {
-                        raised = end;
-                        suspects = verdict.suspects;
-                        evidence = verdict.evidence;
-                        EXPECT_LT(*verdict.score, kThreshold);
-                      }
-                    });
-  for (const Event& event : start(std::nullopt, 3, 120 * kSecond)) {
-    detector.add(event);
-  }
+  judge(makeJudge(model_, allLimits(*model_, kNone), kWindow, graph_),
+        start(std::nullopt, 3, 120 * kSecond), [&](const Verdict& verdict) {
+          const double end = toSeconds(verdict.window->start + kWindow);
+          if (verdict.suspicion && !suspected) {
+            suspected = end;
+          }
+          if (verdict.alarm && !raised) {
+            raised = end;
+            suspects = verdict.suspects;
+            evidence = verdict.evidence;
+            EXPECT_LT(*verdict.score, kThreshold);
+          }
+        });
   EXPECT_NEAR(suspected.value(), 5.2, 0.3);
   EXPECT_NEAR(raised.value(), 65.2, 0.3);
   EXPECT_EQ(evidence, "never heard");
@@ -263,21 +235,14 @@ TEST_F(NeverHeardTest, TheJudgeSuspectsAndThenAlarms) {
 }
 
 TEST_F(NeverHeardTest, WhatFellSilentIsNamedBeforeWhatNeverCame) {
-  train({start(0, 1)}, {start(0, 7)});
   const Judgement judgement = afterSilenceOfB();
-  ASSERT_EQ(judgement.suspects.size(), 2U);
-  EXPECT_EQ(judgement.suspects[0].id, kB);
-  EXPECT_EQ(judgement.suspects[1].id, kC);
+  EXPECT_EQ(idsOf(judgement.suspects), (std::vector<EventId>{kB, kC}));
   EXPECT_EQ(judgement.evidence, "never heard, overdue");
 }
 
 TEST_F(NeverHeardTest, WhoWaitsForItIsNamedAfterIt) {
-  train({start(0, 1)}, {start(0, 7)});
   graph_->connect("/c", "/z", "/b");
-  const Judgement judgement = afterSilenceOfB();
-  ASSERT_EQ(judgement.suspects.size(), 2U);
-  EXPECT_EQ(judgement.suspects[0].id, kC);
-  EXPECT_EQ(judgement.suspects[1].id, kB);
+  EXPECT_EQ(idsOf(afterSilenceOfB().suspects), (std::vector<EventId>{kC, kB}));
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <ctime>
 #include <memory>
 #include <optional>
@@ -11,7 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "../recordings.h"
+#include "../../verdict/accepted.h"
+#include "../judged.h"
+#include "../tracks.h"
 #include "self_awareness/core/evidence/judge.h"
 
 namespace self_awareness::core::evidence {
@@ -28,17 +29,21 @@ constexpr std::int64_t kEnd = 100 * kSecond;
 constexpr std::int64_t kAgo = 30 * kSecond;
 
 Events robot(std::int64_t start, unsigned seed) {
-  Events events;
-  for (EventId id = 0; id < kRobot.size(); ++id) {
-    events = together({events, irregular(id, start, start + kEnd, 100 * kMillisecond, seed + id)});
-  }
-  return events;
+  return atRandom(kRobot.size(), start, kEnd, 100 * kMillisecond, seed);
 }
 
 std::unique_ptr<NewMode> newMode(const std::shared_ptr<const Model>& model,
                                  std::shared_ptr<const SourceGraph> graph) {
   return std::make_unique<NewMode>(
       model, std::make_shared<Upstream>(model->components(), std::move(graph)));
+}
+
+/// What is excused where nobody may be silent, and every limit is 1.
+std::optional<Silent> excuseAny(const std::shared_ptr<const Model>& model,
+                                const std::shared_ptr<const SourceGraph>& graph,
+                                std::vector<double>& shares, const Scorer& scorer) {
+  return newMode(model, graph)
+      ->excuse(shares, allLimits(*model, 1), scorer, std::vector<bool>(model->size(), false));
 }
 
 class NewModeTest : public testing::Test {
@@ -57,31 +62,22 @@ class NewModeTest : public testing::Test {
     const Limits limits = close(scorer, ages, now);
     return !new_mode_->excuseAccepted(shares_, limits, scorer, may_be_silent_).empty();
   }
-  void accept(const Strings& together) {
-    Acceptance mode;
-    mode.kind = Kind::kNewMode;
-    mode.together = together;
-    Acceptances accepted;
-    accepted.add(mode);
-    new_mode_->accept(accepted);
-  }
+  void accept(const Strings& together) { new_mode_->accept(allOf({acceptedMode(together)})); }
   /// @return limits of the model's tracks
   Limits close(Scorer& scorer, const std::vector<std::int64_t>& ages, std::int64_t now) {
     Events last;
     for (EventId id = 0; id < kRobot.size(); ++id) {
       last.push_back({now - ages[id], id});
     }
-    for (const Event& event : together({last})) {
-      scorer.add(event);
-    }
+    addAll(scorer, together({last}));
     scorer.closeWindow(now);
-    shares_.assign(model_->tracks().size(), 0);
+    shares_ = allTracks(*model_, 0);
     for (EventId id = 0; id < kRobot.size(); ++id) {
       share(id) = ages[id] > 0 ? 2 : 0;
     }
-    return {std::vector<double>(model_->tracks().size(), 1), {}};
+    return allLimits(*model_, 1);
   }
-  double& share(EventId id) { return shares_[indexOf(model_->tracks(), kOverdue, id, id)]; }
+  double& share(EventId id) { return ofTrack(shares_, *model_, kOverdue, id); }
 
   std::vector<double> shares_;
   std::vector<bool> may_be_silent_ = std::vector<bool>(kRobot.size(), false);
@@ -223,78 +219,35 @@ TEST_F(NewModeTest, AfterARestartNothingIsExcused) {
   EXPECT_FALSE(excuse({kAgo + kSecond, 0, 0, 0, 0, 0}, kEnd + kSecond));
 }
 
-/// What a judge says of a robot some of whom stop after 20 s.
-class AcceptedModeTest : public NewModeTest {
- protected:
-  struct Said {
-    std::optional<std::int64_t> first;  ///< end of the first unusual window [ns]
-    double largest = 0;                 ///< share that was told
-    Strings mode;                       ///< of the last window
-  };
-  Said judge(const std::vector<EventId>& stopping, const Acceptances& accepted) {
-    Limits limits{std::vector<double>(model_->tracks().size(), std::nan("")), {}};
-    for (EventId id = 0; id < kRobot.size(); ++id) {
-      limits.tracks[indexOf(model_->tracks(), kOverdue, id, id)] =
-          model_->overdue(id, 2 * kSecond);
-    }
-    Said said;
-    const auto judge = makeJudge(model_, limits, kWindow, graph_, nullptr,
-                                 [&](const Window& /*window*/, const Shares& shares) {
-                                   for (const double share : shares.tracks) {
-                                     said.largest = std::max(said.largest, share);
-                                   }
-                                 });
-    judge->accept(accepted);
-    Events events;
-    for (EventId id = 0; id < kRobot.size(); ++id) {
-      const bool stops = std::count(stopping.begin(), stopping.end(), id) > 0;
-      events = together(
-          {events, timer(id, 0, stops ? 20 * kSecond : 40 * kSecond, 100 * kMillisecond)});
-    }
-    std::size_t next = 0;
-    for (std::int64_t end = kWindow; end <= 40 * kSecond; end += kWindow) {
-      for (; next < events.size() && events[next].stamp < end; ++next) {
-        judge->add(events[next]);
-      }
-      Window window;
-      window.start = end - kWindow;
-      const Judgement judgement = judge->judge(window, end, NameSuspects::kIfUnusual);
-      said.mode = judgement.mode;
-      if ((judgement.abnormal || judgement.suspicious || judgement.silent) && !said.first) {
-        said.first = end;
-      }
-    }
-    return said;
+TEST_F(NewModeTest, AnAcceptedOneIsNeitherSuspiciousNorAShareOfALimit) {
+  const Strings stopping{"/arm", "/laser", "/lidar", "/wheels"};
+  Limits limits = allLimits(*model_, kNone);
+  Events events;
+  for (EventId id = 0; id < kRobot.size(); ++id) {
+    ofTrack(limits.tracks, *model_, kOverdue, id) = model_->overdue(id, 2 * kSecond);
+    const std::int64_t end = id < stopping.size() ? 20 * kSecond : 40 * kSecond;
+    events = together({events, timer(id, 0, end, 100 * kMillisecond)});
   }
-  static Acceptances withMode(const Strings& together) {
-    Acceptance mode;
-    mode.kind = Kind::kNewMode;
-    mode.together = together;
-    Acceptances accepted;
-    accepted.add(mode);
-    return accepted;
-  }
-};
-
-TEST_F(AcceptedModeTest, IsNeitherSuspiciousNorAShareOfALimit) {
-  const Said before = judge({0, 1, 2, 3}, {});
-  ASSERT_TRUE(before.first);
-  EXPECT_LT(*before.first, 23 * kSecond);
-  EXPECT_GT(before.largest, 1);
-  const Said after = judge({0, 1, 2, 3}, withMode({"/arm", "/laser", "/lidar", "/wheels"}));
-  EXPECT_FALSE(after.first);
-  EXPECT_TRUE(before.mode.empty());
-  EXPECT_EQ(after.mode, (Strings{"/arm", "/laser", "/lidar", "/wheels"}));
-  EXPECT_LE(after.largest, 1);
-}
-
-TEST_F(AcceptedModeTest, WhoDiesByHimselfIsFoundAsSoonAsBefore) {
-  const Acceptances accepted = withMode({"/arm", "/laser", "/lidar", "/wheels"});
-  for (const std::vector<EventId>& dead :
-       {std::vector<EventId>{0}, {2}, {0, 2}, {0, 1, 2}, {kImu}}) {
-    const Said before = judge(dead, {});
-    ASSERT_TRUE(before.first);
-    EXPECT_EQ(judge(dead, accepted).first, before.first);
+  for (const bool is_accepted : {false, true}) {
+    double largest = 0;  // share that was told
+    std::optional<std::int64_t> unusual;
+    Strings mode;
+    std::unique_ptr<core::Judge> asked = makeJudge(
+        model_, limits, kWindow, graph_, nullptr, [&](const Window&, const Shares& shares) {
+          largest =
+              std::max(largest, *std::max_element(shares.tracks.begin(), shares.tracks.end()));
+        });
+    asked->accept(is_accepted ? allOf({acceptedMode(stopping)}) : Acceptances{});
+    judge(std::move(asked), events, [&](const Verdict& verdict) {
+      if (!unusual && (verdict.abnormal || verdict.suspicion || verdict.silent)) {
+        unusual = verdict.window->start;
+      }
+      mode = verdict.mode;
+    });
+    EXPECT_EQ(unusual.has_value(), !is_accepted);
+    EXPECT_LT(unusual.value_or(0), 23 * kSecond);
+    EXPECT_EQ(largest > 1, !is_accepted);
+    EXPECT_EQ(mode, is_accepted ? stopping : Strings{});
   }
 }
 
@@ -323,19 +276,16 @@ TEST(NewModeOfServers, WhoOwesAnAnswerIsNotInANewMode) {
     scorer.add({id == 0 ? kEnd : kEnd - kAgo, id});
   }
   scorer.closeWindow(kEnd);
-  const Limits limits{std::vector<double>(model->tracks().size(), 1), {}};
   for (const double owed : {0.5, 2.0}) {
-    std::vector<double> shares(model->tracks().size(), 0);
+    std::vector<double> shares = allTracks(*model, 0);
     for (EventId id = 1; id < types.size(); ++id) {
-      shares[indexOf(model->tracks(), kOverdue, id, id)] = 2;
+      ofTrack(shares, *model, kOverdue, id) = 2;
     }
-    shares[indexOf(model->tracks(), kDeadlines, kServer, 0)] = owed;
-    const std::optional<Silent> silent =
-        newMode(model, graph)
-            ->excuse(shares, limits, scorer, std::vector<bool>(types.size(), false));
+    ofTrack(shares, *model, kDeadlines, kServer, 0) = owed;
+    const std::optional<Silent> silent = excuseAny(model, graph, shares, scorer);
     ASSERT_TRUE(silent);
     EXPECT_EQ(silent->has("/server"), owed < 1);
-    EXPECT_EQ(shares[indexOf(model->tracks(), kOverdue, kServer, kServer)], owed < 1 ? 0 : 2);
+    EXPECT_EQ(ofTrack(shares, *model, kOverdue, kServer), owed < 1 ? 0 : 2);
   }
 }
 
@@ -371,18 +321,13 @@ class RootWithoutTrackTest : public testing::Test {
     for (EventId id = 1; id < kImuOfPlanned; ++id) {
       last.push_back({kEnd - kAgo, id});
     }
-    for (const Event& event : together({last})) {
-      scorer.add(event);
-    }
+    addAll(scorer, together({last}));
     scorer.closeWindow(kEnd);
-    std::vector<double> shares(model_->tracks().size(), 0);
+    std::vector<double> shares = allTracks(*model_, 0);
     for (EventId id = 1; id < kImuOfPlanned; ++id) {
-      shares[indexOf(model_->tracks(), kOverdue, id, id)] = 2;
+      ofTrack(shares, *model_, kOverdue, id) = 2;
     }
-    const Limits limits{std::vector<double>(model_->tracks().size(), 1), {}};
-    const std::unique_ptr<NewMode> new_mode = newMode(model_, graph_);
-    return new_mode->excuse(shares, limits, scorer, std::vector<bool>(model_->size(), false))
-        .has_value();
+    return excuseAny(model_, graph_, shares, scorer).has_value();
   }
 
   static constexpr EventId kImuOfPlanned = 5;
@@ -411,12 +356,10 @@ class CompanyOfOthersTest : public testing::Test {
   CompanyOfOthersTest() { graph_->connect("/laser", "/scan", "/slam"); }
 
   static Events robot(std::int64_t start, unsigned seed) {
-    Events events = irregular(kImu, start, start + kEnd, 100 * kMillisecond, seed + kImu);
+    constexpr std::int64_t kGap = 100 * kMillisecond;
+    Events events = irregular(kImu, start, start + kEnd, kGap, seed + kImu);
     for (std::int64_t session = start; session < start + kEnd; session += 20 * kSecond) {
-      for (EventId id = 0; id < kImu; ++id) {
-        events = together({events, irregular(id, session, session + 10 * kSecond,
-                                             100 * kMillisecond, seed + id)});
-      }
+      events = together({events, atRandom(kImu, session, 10 * kSecond, kGap, seed)});
     }
     return events;
   }
@@ -437,20 +380,17 @@ TEST_F(CompanyOfOthersTest, ThatGoesOnMakesThemNoFaultEither) {
     scorer.add({stamp, kImu});
   }
   scorer.closeWindow(kEnd);
-  std::vector<double> shares(model_->tracks().size(), 0);
+  std::vector<double> shares = allTracks(*model_, 0);
   std::size_t beyond = 0;
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const Track& watched = model_->tracks()[track];
-    if (channelName(watched) == "company" && watched.to < kSlam) {
+    if (channelName(watched) == kCompany && watched.to < kSlam) {
       shares[track] = 2;
       ++beyond;
     }
   }
   ASSERT_GE(beyond, 4U);
-  const Limits limits{std::vector<double>(shares.size(), 1), {}};
-  const std::unique_ptr<NewMode> new_mode = newMode(model_, graph_);
-  const auto found =
-      new_mode->excuse(shares, limits, scorer, std::vector<bool>(model_->size(), false));
+  const std::optional<Silent> found = excuseAny(model_, graph_, shares, scorer);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->components, (Strings{"/arm", "/laser", "/lidar", "/wheels"}));
   EXPECT_EQ(shares, std::vector<double>(shares.size(), 0));
@@ -481,16 +421,14 @@ TEST(NewModeOfALargeRobot, TakesLittleTimeWhileAllWaitForOneThatDied) {
   const auto model = std::make_shared<Model>(
       watch(countsOf({events}, types), countsOf({later(events)}, types), *graph, tuning));
   Scorer scorer(model, kWindow);
-  for (const Event& event : events) {
-    scorer.add(event);
-  }
+  addAll(scorer, events);
   scorer.add({40 * kSecond, kTypes + 1});
   scorer.closeWindow(40 * kSecond);
-  std::vector<double> shares(model->tracks().size(), 0);
+  std::vector<double> shares = allTracks(*model, 0);
   for (EventId id = 0; id <= kTypes; ++id) {
-    shares.at(indexOf(model->tracks(), kOverdue, id, id)) = 2;
+    ofTrack(shares, *model, kOverdue, id) = 2;
   }
-  const Limits limits{std::vector<double>(shares.size(), 1), {}};
+  const Limits limits = allLimits(*model, 1);
   const std::unique_ptr<NewMode> new_mode = newMode(model, graph);
   const std::vector<bool> none(model->size(), false);
   const std::clock_t begin = std::clock();

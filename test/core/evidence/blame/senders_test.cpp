@@ -1,14 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "../recordings.h"
+#include "../../verdict/accepted.h"
+#include "../tracks.h"
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/verdict/alarm.h"
 #include "self_awareness/core/verdict/detector.h"
@@ -28,30 +28,23 @@ constexpr EventId kOfAll = 3;
 constexpr EventId kFrames = 4;
 
 Events robot(std::int64_t start, std::int64_t length, unsigned seed) {
-  Events events;
-  for (EventId id = 0; id < kRobot.size(); ++id) {
-    events = together({events, irregular(id, start, start + length, kPeriod, seed + id)});
-  }
-  return events;
+  return atRandom(kRobot.size(), start, length, kPeriod, seed);
 }
 
 class SendersTest : public testing::Test {
  protected:
   SendersTest() {
-    limits_.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
     for (EventId id = 0; id < kRobot.size(); ++id) {
       limit(kOverdue, id) = model_->overdue(id, 3 * kSecond);
     }
   }
   double& limit(const std::string& channel, EventId id) {
-    return limits_.tracks[indexOf(model_->tracks(), channel, id, id)];
+    return ofTrack(limits_.tracks, *model_, channel, id);
   }
   void start() {
-    std::unique_ptr<core::Judge> judge =
-        makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
-    judge->accept(accepted_);
     detector_ = std::make_unique<Detector>(
-        std::move(judge), kWindow, Detector::Parameters{}, [this](const Verdict& verdict) {
+        makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_), kWindow,
+        Detector::Parameters{}, [this](const Verdict& verdict) {
           if (const auto ended = alarms_.add(verdict, kWindow, *heard_)) {
             told_.push_back(*ended);
           }
@@ -96,8 +89,7 @@ class SendersTest : public testing::Test {
       std::make_shared<Model>(watch(countsOf({robot(0, 60 * kSecond, 100)}, kRobot),
                                     countsOf({robot(kStart, 60 * kSecond, 200)}, kRobot)));
   std::shared_ptr<Vocabulary> heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
-  Limits limits_;
-  Acceptances accepted_;
+  Limits limits_ = allLimits(*model_, kNone);
   std::unique_ptr<Detector> detector_;
   Alarms alarms_;
   std::vector<Alarm> told_;
@@ -121,11 +113,8 @@ TEST_F(SendersTest, ATopicThatComesFromAnotherNodeIsOneSuspicion) {
 }
 
 TEST_F(SendersTest, WhatIsAcceptedMayComeFromAnotherNode) {
-  Acceptance stranger;
-  stranger.component = "/manager";
-  stranger.kind = Kind::kStranger;
-  accepted_.add(stranger);
   start();
+  detector_->accept(allOf({accepted("/manager", "", Kind::kStranger)}));
   run(0, 150 * kSecond, {0, intern("/manager", kB), 2, 3, 4});
   EXPECT_TRUE(told().empty());
 }
@@ -207,13 +196,9 @@ TEST_F(SendersTest, TwoSendersOfOneNameAreAnAlarmOfNoComponent) {
   }
   detector_->setSenders({{*all.doubled.begin()}, {}});
   const auto twice = [&](std::int64_t from, std::int64_t until, const auto& who) {
-    Events more = robot(from, until - from, 500);
-    more.erase(std::remove_if(more.begin(), more.end(),
-                              [&](const Event& event) { return !who(event.id); }),
-               more.end());
-    for (const Event& event : together({robot(from, until - from, 300), more})) {
-      detector_->add(event);
-    }
+    const Events more = without(robot(from, until - from, 500),
+                                [&](const Event& event) { return !who(event.id); });
+    addAll(*detector_, together({robot(from, until - from, 300), more}));
   };
   twice(30 * kSecond, 31 * kSecond, [](EventId id) { return id == kOfAll; });
   EXPECT_EQ(told().back().reason, "/diagnostics of /a comes from two senders of one name");
@@ -258,7 +243,7 @@ TEST_F(SendersTest, WhatCountedTwiceInTrainingIsNormal) {
   };
   model_ = std::make_shared<Model>(
       watch(countsOf({relay(0, 100)}, kRobot), countsOf({relay(kStart, 200)}, kRobot)));
-  limits_.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
+  limits_ = allLimits(*model_, kNone);
   start();
   detector_->setSenders({{{"/a", "/x"}}, {}});
   run(0, 60 * kSecond, usual_);

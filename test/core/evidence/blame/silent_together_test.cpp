@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../recordings.h"
+#include "../tracks.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -21,6 +21,7 @@ const std::vector<EventType> kRobot{{"/laser", "/scan", "T"},
                                     {"/faces", "/people", "T"}};
 constexpr EventId kBattery = 2;
 constexpr std::int64_t kEnd = 100 * kSecond;
+constexpr std::int64_t kAgo = 30 * kSecond;
 
 Events robot(std::int64_t start, unsigned seed) {
   Events events;
@@ -48,16 +49,13 @@ class SilentTogetherTest : public testing::Test {
     for (EventId id = 0; id < kRobot.size(); ++id) {
       last.push_back({kEnd - ages[id], id});
     }
-    for (const Event& event : together({last})) {
-      scorer.add(event);
-    }
+    addAll(scorer, together({last}));
     scorer.closeWindow(kEnd);
-    std::vector<double> shares(model_->tracks().size(), 0);
+    std::vector<double> shares = allTracks(*model_, 0);
     for (EventId id = 0; id < kRobot.size(); ++id) {
-      shares[indexOf(model_->tracks(), kOverdue, id, id)] = ages[id] > 0 ? share : 0;
+      ofTrack(shares, *model_, kOverdue, id) = ages[id] > 0 ? share : 0;
     }
-    const Limits limits{std::vector<double>(model_->tracks().size(), 1), {}};
-    return SilentTogether(model_, graph_).find(shares, limits, scorer, strangers_);
+    return SilentTogether(model_, graph_).find(shares, allLimits(*model_, 1), scorer, strangers_);
   }
 
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
@@ -67,74 +65,67 @@ class SilentTogetherTest : public testing::Test {
 };
 
 TEST_F(SilentTogetherTest, AComputerOfWhichNobodyIsHeardIsFound) {
-  const std::int64_t ago = 30 * kSecond;
-  const std::optional<Silent> silent = find({ago, ago + 1, ago + kSecond, 0, 0});
+  const std::optional<Silent> silent = find({kAgo, kAgo + 1, kAgo + kSecond, 0, 0});
   ASSERT_TRUE(silent);
   EXPECT_EQ(silent->hosts, Strings{"base"});
   EXPECT_EQ(silent->components, (Strings{"/battery", "/imu", "/laser"}));
-  EXPECT_EQ(silent->since, kEnd - ago);
+  EXPECT_EQ(silent->since, kEnd - kAgo);
 }
 
 TEST_F(SilentTogetherTest, ItIsNotFoundWhereOneOfItsNodesIsHeard) {
-  const std::int64_t ago = 30 * kSecond;
-  EXPECT_FALSE(find({ago, ago, 0, 0, 0}));
-  EXPECT_FALSE(find({ago, ago, kSecond, 0, 0})) << "the slow one may yet come";
+  EXPECT_FALSE(find({kAgo, kAgo, 0, 0, 0}));
+  EXPECT_FALSE(find({kAgo, kAgo, kSecond, 0, 0})) << "the slow one may yet come";
   strangers_["/new"] = kSecond;
   graph_->place("/new", "base");
-  EXPECT_FALSE(find({ago, ago, ago, 0, 0}))
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}))
       << "somebody there is heard whom the model does not know";
 }
 
 TEST_F(SilentTogetherTest, WhoFellSilentLongBeforeTheOthersDidNotDoSoWithThem) {
-  const std::int64_t ago = 30 * kSecond;
-  const std::optional<Silent> on_host = find({2 * ago, ago, ago, 0, 0});
+  const std::optional<Silent> on_host = find({2 * kAgo, kAgo, kAgo, 0, 0});
   ASSERT_TRUE(on_host);
   EXPECT_EQ(on_host->components, (Strings{"/battery", "/imu"}));
-  const std::optional<Silent> all = find({2 * ago, ago, ago, ago, ago});
+  const std::optional<Silent> all = find({2 * kAgo, kAgo, kAgo, kAgo, kAgo});
   ASSERT_TRUE(all);
   EXPECT_TRUE(all->hosts.empty());
   EXPECT_EQ(all->components, (Strings{"/battery", "/camera", "/faces", "/imu"}));
 }
 
 TEST_F(SilentTogetherTest, AMomentWithoutTheOthersTakesNobodysDeathAway) {
-  EXPECT_FALSE(find({30 * kSecond, 5 * kSecond, 5 * kSecond, 5 * kSecond, 5 * kSecond}, 0.5))
+  EXPECT_FALSE(find({kAgo, 5 * kSecond, 5 * kSecond, 5 * kSecond, 5 * kSecond}, 0.5))
       << "a silence that is rare, and far from any limit";
   for (const EventType& type : kRobot) {
     graph_->place(type.source, "");
   }
-  EXPECT_FALSE(find({30 * kSecond, 30 * kSecond, 30 * kSecond, 30 * kSecond, 2 * kSecond}))
-      << "one alone";
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, kAgo, 2 * kSecond})) << "one alone";
 }
 
 TEST_F(SilentTogetherTest, WhoIsFarFromItsLimitProvesNothing) {
-  EXPECT_FALSE(find({30 * kSecond, 30 * kSecond, 30 * kSecond, 0, 0}, 0.5));
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}, 0.5));
 }
 
 TEST_F(SilentTogetherTest, WhereNobodyIsHeardItIsAll) {
-  const std::int64_t ago = 30 * kSecond;
-  const std::optional<Silent> silent = find({ago, ago, ago, ago, ago});
+  const std::optional<Silent> silent = find({kAgo, kAgo, kAgo, kAgo, kAgo});
   ASSERT_TRUE(silent);
   EXPECT_TRUE(silent->hosts.empty());
   EXPECT_EQ(silent->components.size(), 5U);
 }
 
 TEST_F(SilentTogetherTest, WithoutComputersOnlyAllAreSilentTogether) {
-  const std::int64_t ago = 30 * kSecond;
   for (const EventType& type : kRobot) {
     graph_->place(type.source, "");
   }
-  EXPECT_FALSE(find({ago, ago, ago, 0, 0}));
-  EXPECT_TRUE(find({ago, ago, ago, ago, ago}));
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}));
+  EXPECT_TRUE(find({kAgo, kAgo, kAgo, kAgo, kAgo}));
   for (const EventType& type : kRobot) {
     graph_->place(type.source, "base");
   }
-  EXPECT_FALSE(find({ago, ago, ago, 0, 0})) << "all run on one";
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0})) << "all run on one";
 }
 
 TEST_F(SilentTogetherTest, SeveralComputersAreNamedTogether) {
-  const std::int64_t ago = 30 * kSecond;
   graph_->place("/battery", "dock");
-  const std::optional<Silent> silent = find({ago, ago, 0, ago, ago});
+  const std::optional<Silent> silent = find({kAgo, kAgo, 0, kAgo, kAgo});
   ASSERT_TRUE(silent);
   EXPECT_EQ(silent->hosts, (Strings{"base", "head"}));
   EXPECT_EQ(describe(*silent), "everything on hosts base and head fell silent: 4 nodes");

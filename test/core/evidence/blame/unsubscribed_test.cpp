@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../../verdict/accepted.h"
 #include "../recordings.h"
 
 namespace self_awareness::core::evidence {
@@ -16,12 +17,7 @@ const std::vector<EventType> kRobot{
     {"/camera", "/image", "T"}, {"/faces", "/people", "T"}, {"/faces", "/faces/debug", "T"}};
 
 Events robot(std::int64_t start, unsigned seed) {
-  Events events;
-  for (EventId id = 0; id < kRobot.size(); ++id) {
-    events = together(
-        {events, irregular(id, start, start + 20 * kSecond, 100 * kMillisecond, seed + id)});
-  }
-  return events;
+  return atRandom(kRobot.size(), start, 20 * kSecond, 100 * kMillisecond, seed);
 }
 
 class UnsubscribedTest : public testing::Test {
@@ -96,17 +92,11 @@ TEST_F(UnsubscribedTest, AComponentIsOneFindingWhateverItMisses) {
 }
 
 TEST_F(UnsubscribedTest, WhatIsAcceptedIsNotMissing) {
-  Acceptance of_image;
-  of_image.component = "/faces";
-  of_image.topic = "/image";
-  of_image.kind = Kind::kUnsubscribed;
-  Acceptances accepted;
-  accepted.add(of_image);
   unsubscribed_.set({{"/faces", "/image"}});
   at(0);
   EXPECT_TRUE(at(61));
   EXPECT_EQ(unsubscribed_.suspects().front().reason.topics, std::vector<std::string>{"/image"});
-  unsubscribed_.accept(accepted);
+  unsubscribed_.accept(allOf({accepted("/faces", "/image", Kind::kUnsubscribed)}));
   EXPECT_FALSE(at(62));
   unsubscribed_.set({{"/faces", "/image"}, {"/faces", "/depth"}});
   EXPECT_FALSE(at(63));

@@ -33,11 +33,7 @@ struct Fault {
 class PauseTest : public testing::TestWithParam<Fault> {};
 
 TEST_P(PauseTest, AnAlarmEndsWhenItsSourcePauses) {
-  std::vector<Events> recordings;
-  for (unsigned seed = 0; seed < 4; ++seed) {
-    recordings.push_back(pausing(seed));
-  }
-  const auto model = learned(recordings);
+  const auto model = learned(fourStarts(pausing));
   Events events = pausing(10);
   const std::int64_t pause = events.front().stamp + 2 * (kSends + kPauses) + kSends;
   const std::int64_t onset = pause - 4 * kSecond;
@@ -48,7 +44,7 @@ TEST_P(PauseTest, AnAlarmEndsWhenItsSourcePauses) {
   }
   int before = 0;
   int after = 0;
-  judge(*model, events, [&](const Verdict& verdict) {
+  judge(model->makeJudge(), events, [&](const Verdict& verdict) {
     if (verdict.evidence.find(GetParam().channel) != std::string::npos) {
       ++(verdict.window->start < pause + kRateSpan ? before : after);
     }
@@ -72,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{kFrozen, [](Event& event, std::int64_t) { event.attributes.same = true; }}));
 
 TEST(Lost, WhatIsLostFromPauseToPauseAddsUp) {
-  const auto model = learned({pausing(0), pausing(1), pausing(2), pausing(3)});
+  const auto model = learned(fourStarts(pausing));
   Events events;
   std::int64_t last = 0;
   for (Event event : pausing(10)) {
@@ -88,7 +84,7 @@ TEST(Lost, WhatIsLostFromPauseToPauseAddsUp) {
     events.push_back(event);
   }
   int lost = 0;
-  judge(*model, events, [&](const Verdict& verdict) {
+  judge(model->makeJudge(), events, [&](const Verdict& verdict) {
     lost += verdict.evidence.find(kLost) != std::string::npos ? 1 : 0;
   });
   EXPECT_GT(lost, 100);
@@ -112,25 +108,18 @@ TEST(Start, AFirstStampThatIsOddIsForgotten) {
 }
 
 TEST(Start, FirstMessagesOfWhoComesLaterAreForgotten) {
-  const auto recording = [](std::uint64_t first_size, unsigned seed) {
-    const std::int64_t start = (seed + 1) * kStart;
-    Events events = messages(kA, start + 60 * kSecond, start + kLength, {}, seed);
-    for (std::size_t k = 0; k < 5; ++k) {
-      events[k].attributes.size = sizeClass(first_size);
-    }
-    return together({events, messages(kB, start, start + kLength, {}, seed + 100)});
+  const auto limitWith = [](std::uint64_t first_size) {
+    return limitOf(*learned(fourStarts([&](unsigned seed) {
+      const std::int64_t start = (seed + 1) * kStart;
+      Events events = messages(kA, start + 60 * kSecond, start + kLength, {}, seed);
+      for (std::size_t k = 0; k < 5; ++k) {
+        events[k].attributes.size = sizeClass(first_size);
+      }
+      return together({events, messages(kB, start, start + kLength, {}, seed + 100)});
+    })),
+                   kSize);
   };
-  double limits[2] = {};
-  for (int k = 0; k < 2; ++k) {
-    std::vector<Events> recordings;
-    for (unsigned seed = 0; seed < 4; ++seed) {
-      recordings.push_back(recording(k == 0 ? 800 : 10, seed));
-    }
-    const auto model = learned(recordings);
-    ASSERT_TRUE(watches(*model, kSize));
-    limits[k] = limitOf(*model, kSize);
-  }
-  EXPECT_EQ(limits[0], limits[1]);
+  EXPECT_EQ(limitWith(10), limitWith(800));
 }
 
 TEST(Age, AFewMessagesMayLackAStamp) {
@@ -148,16 +137,13 @@ TEST(Age, AFewMessagesMayLackAStamp) {
 }
 
 TEST(Frozen, APauseBetweenTwoThatAreTheSameIsNoReasonToSwitchItOff) {
-  std::vector<Events> recordings;
-  for (unsigned seed = 0; seed < 4; ++seed) {
+  const auto model = learned(fourStarts([](unsigned seed) {
     const std::int64_t start = (seed + 1) * kStart;
     const Events first = messages(kA, start, start + 100 * kSecond, {}, seed);
     Events second = messages(kA, start + 131 * kSecond, start + kLength, {}, seed);
     second[0].attributes.same = true;
-    recordings.push_back(
-        together({first, second, messages(kB, start, start + kLength, {}, seed + 100)}));
-  }
-  const auto model = learned(recordings);
+    return together({first, second, messages(kB, start, start + kLength, {}, seed + 100)});
+  }));
   ASSERT_TRUE(watches(*model, kFrozen));
   EXPECT_LT(limitOf(*model, kFrozen), 4);
 }

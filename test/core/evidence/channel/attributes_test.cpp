@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <random>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "../attribute_alarms.h"
+#include "../tracks.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -17,7 +17,8 @@ namespace {
 /// For how long alarms stand in a recording [s].
 double lengthOfAlarms(const core::Model& model, const Events& events) {
   int windows = 0;
-  judge(model, events, [&](const Verdict& verdict) { windows += verdict.alarm ? 1 : 0; });
+  judge(model.makeJudge(), events,
+        [&](const Verdict& verdict) { windows += verdict.alarm ? 1 : 0; });
   return windows * toSeconds(model.window);
 }
 
@@ -45,22 +46,38 @@ void expectNamed(const Begun& alarm, const std::string& channel, Kind kind) {
   EXPECT_EQ(toString(alarm.suspects[0].reason.kind), toString(kind));
 }
 
+/// That an alarm of a robot with this source begins soon, with these words.
+template <typename Change>
+void expectFoundWithin(double seconds, const Source& source, const std::string& channel, Kind kind,
+                       const std::string& words, Change change) {
+  const Events events = faulty(robot(source, 10), change);
+  const auto alarm = alarmIn(*learned(source), events);
+  ASSERT_TRUE(alarm);
+  expectNamed(*alarm, channel, kind);
+  EXPECT_GT(latency(*alarm, events), 0);
+  EXPECT_LE(latency(*alarm, events), seconds);
+  EXPECT_EQ(alarm->suspects[0].reason.words.rfind(words, 0), 0U)
+      << alarm->suspects[0].reason.words;
+}
+
+/// A robot whose messages say nothing.
+Events withoutAttributes(unsigned seed) {
+  Events events = robot({}, seed);
+  for (Event& event : events) {
+    event.attributes = {};
+  }
+  return events;
+}
+
 class AttributesTest : public testing::TestWithParam<std::int64_t> {};
 
 TEST_P(AttributesTest, AStampThatStandsStillIsFoundWithinTwoPeriodsAndASecond) {
   Source source;
   source.period = GetParam();
-  const auto model = learned(source);
-  const Events events = faulty(robot(source, 10), [](Event& event, std::int64_t since) {
-    event.attributes.age = ageClass(toNanoseconds(0.02) + since);
-  });
-  const auto alarm = alarmIn(*model, events);
-  ASSERT_TRUE(alarm);
-  expectNamed(*alarm, kAge, Kind::kStale);
-  EXPECT_GT(latency(*alarm, events), 0);
-  EXPECT_LE(latency(*alarm, events), 2 * toSeconds(source.period) + 1 + 0.3);
-  EXPECT_EQ(alarm->suspects[0].reason.words.rfind("stamps ", 0), 0U)
-      << alarm->suspects[0].reason.words;
+  expectFoundWithin(2 * toSeconds(source.period) + 1 + 0.3, source, kAge, Kind::kStale, "stamps ",
+                    [](Event& event, std::int64_t since) {
+                      event.attributes.age = ageClass(toNanoseconds(0.02) + since);
+                    });
 }
 
 TEST_P(AttributesTest, EmptyMessagesAreFoundWithinFiveSeconds) {
@@ -68,28 +85,15 @@ TEST_P(AttributesTest, EmptyMessagesAreFoundWithinFiveSeconds) {
   source.period = GetParam();
   source.size = 80000;
   source.spread = 0.5;
-  const auto model = learned(source);
-  const Events events = faulty(robot(source, 10), [](Event& event, std::int64_t) {
-    event.attributes.size = sizeClass(100);
-  });
-  const auto alarm = alarmIn(*model, events);
-  ASSERT_TRUE(alarm);
-  expectNamed(*alarm, kSize, Kind::kOtherSize);
-  EXPECT_GT(latency(*alarm, events), 0);
-  EXPECT_LE(latency(*alarm, events), 5);
+  expectFoundWithin(5, source, kSize, Kind::kOtherSize, "",
+                    [](Event& event, std::int64_t) { event.attributes.size = sizeClass(100); });
 }
 
 TEST_P(AttributesTest, TheSameContentAgainAndAgainIsFoundWithinFiveSeconds) {
   Source source;
   source.period = GetParam();
-  const auto model = learned(source);
-  const Events events =
-      faulty(robot(source, 10), [](Event& event, std::int64_t) { event.attributes.same = true; });
-  const auto alarm = alarmIn(*model, events);
-  ASSERT_TRUE(alarm);
-  expectNamed(*alarm, kFrozen, Kind::kStuck);
-  EXPECT_GT(latency(*alarm, events), 0);
-  EXPECT_LE(latency(*alarm, events), 5);
+  expectFoundWithin(5, source, kFrozen, Kind::kStuck, "the same content ",
+                    [](Event& event, std::int64_t) { event.attributes.same = true; });
 }
 
 INSTANTIATE_TEST_SUITE_P(Periods, AttributesTest,
@@ -144,14 +148,7 @@ TEST(Attributes, OneMessageThatIsOddIsNoAlarm) {
 }
 
 TEST(Attributes, AreOffWhereTrainingKnowsNothingOfThem) {
-  std::vector<Events> recordings;
-  for (unsigned seed = 0; seed < 4; ++seed) {
-    recordings.push_back(robot({}, seed));
-    for (Event& event : recordings.back()) {
-      event.attributes = {};
-    }
-  }
-  const auto model = learned(recordings);
+  const auto model = learned(fourStarts(withoutAttributes));
   for (const char* channel : {kAge, kLost, kSize, kFrozen}) {
     EXPECT_FALSE(watches(*model, channel)) << channel;
   }
@@ -165,23 +162,11 @@ TEST(Attributes, OfOlderRecordingsAreNotMissed) {
 }
 
 TEST(Attributes, DoNotChangeTheLimitsOfOthers) {
-  std::vector<Events> plain;
-  std::vector<Events> with;
-  for (unsigned seed = 0; seed < 4; ++seed) {
-    with.push_back(robot({}, seed));
-    plain.push_back(with.back());
-    for (Event& event : plain.back()) {
-      event.attributes = {};
-    }
-  }
-  const auto one = learned(plain);
-  const auto other = learned(with);
-  ASSERT_LT(one->watched.tracks.size(), other->watched.tracks.size());
-  for (std::size_t track = 0; track < one->watched.tracks.size(); ++track) {
-    const double limit = one->limits()->tracks[track];
-    const double same = other->limits()->tracks[track];
-    EXPECT_TRUE(limit == same || (std::isnan(limit) && std::isnan(same))) << track;
-  }
+  const Limits one = *learned(fourStarts(withoutAttributes))->limits();
+  Limits other = *learned(Source{})->limits();
+  ASSERT_LT(one.tracks.size(), other.tracks.size());
+  other.tracks.resize(one.tracks.size());
+  expectSameLimits(one, other);
 }
 
 TEST(Age, IsOffWithoutStamps) {
@@ -201,14 +186,9 @@ TEST(Age, IsOffWhereStampsAreThoseOfSomethingOld) {
 }
 
 TEST(Age, AStampThatIsMissingIsFound) {
-  const auto model = learned(Source{});
-  const Events events = faulty(robot({}, 10), [](Event& event, std::int64_t) {
+  expectFoundWithin(5, {}, kAge, Kind::kStale, "without a stamp", [](Event& event, std::int64_t) {
     event.attributes.age = Attributes::kZeroStamp;
   });
-  const auto alarm = alarmIn(*model, events);
-  ASSERT_TRUE(alarm);
-  expectNamed(*alarm, kAge, Kind::kStale);
-  EXPECT_EQ(alarm->suspects[0].reason.words.rfind("without a stamp", 0), 0U);
 }
 
 TEST(Age, AClockThatIsWrongByHoursOrDriftsIsNoFault) {
@@ -249,11 +229,8 @@ TEST(Lost, WhoWasLuckyIsExpectedToLoseWhatOthersDo) {
                      messages(kB, start, start + length, other, seed + 100)});
   };
   for (const double of_other : {0.0, 0.009}) {
-    std::vector<Events> recordings;
-    for (unsigned seed = 0; seed < 4; ++seed) {
-      recordings.push_back(recording(0, of_other, seed, kLength));
-    }
-    const auto model = learned(recordings);
+    const auto model =
+        learned(fourStarts([&](unsigned seed) { return recording(0, of_other, seed, kLength); }));
     EXPECT_TRUE(watches(*model, kLost));
     EXPECT_EQ(alarmIn(*model, recording(0.005, 0, 10, 1000 * kSecond)).has_value(), of_other == 0);
   }
@@ -282,13 +259,11 @@ TEST(Lost, ARestartIsNoLoss) {
 }
 
 TEST(Size, IsOffWhereHalvesOfTheTrainingDiffer) {
-  std::vector<Events> recordings;
-  for (unsigned seed = 0; seed < 4; ++seed) {
+  const auto model = learned(fourStarts([](unsigned seed) {
     Source source;
     source.size = seed % 2 == 0 ? 1000 : 100000;
-    recordings.push_back(robot(source, seed));
-  }
-  const auto model = learned(recordings);
+    return robot(source, seed);
+  }));
   EXPECT_FALSE(watches(*model, kSize));
   EXPECT_TRUE(watches(*model, kSize, kB));
 }

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "../recordings.h"
+#include "../tracks.h"
 #include "core/evidence/channel/scorer.h"
 #include "core/evidence/watch/recent_events.h"
 
@@ -42,11 +42,7 @@ class ChannelTest : public testing::Test {
     events_.restart();
   }
   /// Gives every track the same limit.
-  void useLimits() {
-    Limits limits;
-    limits.tracks.assign(model_->tracks().size(), kLimit);
-    scorer_.capAt(limits);
-  }
+  void useLimits() { scorer_.capAt(allLimits(*model_, kLimit)); }
   double evidence(std::size_t track) { return scorer_.closeWindow(now_)[track]; }
   /// What a suspect is told of, at the end of a window.
   Suspect suspect(std::size_t track) {
@@ -64,15 +60,32 @@ class ChannelTest : public testing::Test {
   std::int64_t now_ = 10 * kStart;
 };
 
+/// What a channel says of one track.
+class TrackTest : public testing::Test {
+ protected:
+  void learn(const Watched& watched, const std::string& channel, EventId to, EventId from) {
+    model_ = std::make_shared<Model>(watched);
+    track_ = indexOf(model_->tracks(), channel, to, from);
+    scorer_ = std::make_unique<Scorer>(model_, kWindow);
+  }
+  double evidenceAt(std::int64_t stamp) { return scorer_->closeWindow(stamp)[track_]; }
+  Reason reason() const {
+    Suspect suspect;
+    suspect.id = model_->tracks().at(track_).to;
+    scorer_->explain(track_, RecentEvents(model_->size()), suspect);
+    return suspect.reason;
+  }
+
+  std::shared_ptr<const Model> model_;
+  std::size_t track_ = 0;
+  std::unique_ptr<Scorer> scorer_;
+};
+
 /// A comes irregularly, and B kUsual after it.
 class FollowedTest : public ChannelTest {
  protected:
-  FollowedTest() : ChannelTest(watch(followed(1), followed(2))) {}
+  FollowedTest() : ChannelTest(watch(startOf(followed(1), 1), startOf(followed(2), 2))) {}
 
-  static Statistics followed(unsigned seed) {
-    const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
-    return countsOf({later(together({asked, answers(kB, asked, kUsual)}), seed * kStart)}, 2);
-  }
   /// Adds an A, and a B so many ns later; none: no B. Closes a window.
   void ask(std::optional<std::int64_t> delay) {
     add({now_, kA});

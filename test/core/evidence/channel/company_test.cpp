@@ -4,16 +4,13 @@
 
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
-#include "../recordings.h"
-#include "core/evidence/channel/scorer.h"
+#include "channel_case.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr const char* kCompany = "company";
 constexpr std::int64_t kFast = 50 * kMillisecond;
 constexpr std::int64_t kSlow = 120 * kMillisecond;
 constexpr std::int64_t kSession = 20 * kSecond;
@@ -38,23 +35,17 @@ Events modes(std::int64_t begin) {
                begin);
 }
 
-class CompanyTest : public testing::Test {
+class CompanyTest : public TrackTest {
  protected:
   void learn(const SourceGraph& graph = {}) {
     watched_ = watch(countsOf({modes(kStart)}), countsOf({modes(2 * kStart)}), graph);
-    model_ = std::make_shared<Model>(watched_);
-    track_ = indexOf(model_->tracks(), kCompany, kA, kB);
-    scorer_ = std::make_unique<Scorer>(model_, kWindow);
+    TrackTest::learn(watched_, kCompany, kA, kB);
   }
-  double evidenceAt(std::int64_t stamp) { return scorer_->closeWindow(stamp)[track_]; }
   bool watches(EventId to, EventId from) const {
     return isWatched(watched_.tracks, kCompany, to, from);
   }
 
   Watched watched_;
-  std::shared_ptr<const Model> model_;
-  std::size_t track_ = 0;
-  std::unique_ptr<Scorer> scorer_;
 };
 
 TEST_F(CompanyTest, WhoPausesTogetherIsInCompany) {
@@ -96,15 +87,11 @@ TEST_F(CompanyTest, SilenceCountsWhileTheOtherGoesOn) {
     scorer_->add({k * kSlow, kB});
   }
   EXPECT_EQ(evidenceAt(2 * kSecond), 10);
-  Suspect suspect;
-  suspect.id = kA;
-  scorer_->explain(track_, RecentEvents(3), suspect);
-  EXPECT_EQ(suspect.reason.kind, Kind::kDied);
-  EXPECT_EQ(suspect.reason.after, "/b /y T");
-  EXPECT_EQ(suspect.reason.unit, unit::kRequests);
-  EXPECT_EQ(suspect.reason.value, 10);
-  EXPECT_EQ(suspect.reason.words,
-            "has not come with the last 10 /b /y T, which pauses when it does");
+  EXPECT_EQ(reason().kind, Kind::kDied);
+  EXPECT_EQ(reason().after, "/b /y T");
+  EXPECT_EQ(reason().unit, unit::kRequests);
+  EXPECT_EQ(reason().value, 10);
+  EXPECT_EQ(reason().words, "has not come with the last 10 /b /y T, which pauses when it does");
   EXPECT_EQ(evidenceAt(100 * kSecond), 10) << "a pause of both is none of one";
   scorer_->add({100 * kSecond, kA});
   EXPECT_EQ(evidenceAt(101 * kSecond), 0);

@@ -19,23 +19,10 @@ DelaySurprise surpriseOf(const Watched& watched, EventId from, EventId to) {
   return DelaySurprise(Model(watched), watched.halves, from, to);
 }
 
-// B comes 20 or 40 ms after A, which comes at random.
-Statistics pairCounts(unsigned seed) {
-  const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
-  Events answered = answers(kB, asked, 20 * kMillisecond);
-  for (std::size_t k = 0; k < answered.size(); k += 3) {
-    answered[k].stamp += 20 * kMillisecond;
-  }
-  return countsOf({later(together({asked, answered}), seed * kStart)}, 2);
-}
-
-// B comes some time after A, which comes at random, about every 200 ms.
-Watched followed(std::int64_t delay) {
-  const auto start = [&](unsigned seed) {
-    const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
-    return countsOf({later(together({asked, answers(kB, asked, delay)}), seed * kStart)}, 2);
-  };
-  return watch(start(1), start(2));
+// B comes so much after A [ns].
+Watched twoStarts(std::int64_t delay) {
+  return watch(startOf(followed(1, 100 * kSecond, delay), 1),
+               startOf(followed(2, 100 * kSecond, delay), 2));
 }
 
 TEST(DelaySurprise, IsStandardisedByWhatTheOtherHalfFinds) {
@@ -69,7 +56,7 @@ TEST(DelaySurprise, IsStandardisedByWhatTheOtherHalfFinds) {
 }
 
 TEST(DelaySurprise, IsBounded) {
-  const Watched watched = watch(pairCounts(1), pairCounts(2));
+  const Watched watched = twoStarts(20 * kMillisecond);
   const DelaySurprise surprise = surpriseOf(watched, kA, kB);
   double largest = 0;
   for (std::int64_t delay = 0; delay < 20 * kSecond; delay += kMillisecond) {
@@ -83,7 +70,7 @@ TEST(DelaySurprise, IsBounded) {
 }
 
 TEST(DelaySurprise, SmallEffectsAreNoFault) {
-  const DelaySurprise surprise = surpriseOf(followed(kMillisecond), kA, kB);
+  const DelaySurprise surprise = surpriseOf(twoStarts(kMillisecond), kA, kB);
   for (const std::int64_t milliseconds : {0, 1, 3, 5}) {
     EXPECT_LE(surprise(milliseconds * kMillisecond), 0) << milliseconds;
   }
@@ -95,7 +82,7 @@ TEST(DelaySurprise, SmallEffectsAreNoFault) {
 TEST(DelaySurprise, WhatASmallEffectIsCanBeSaid) {
   // Usual is the bin from 20 to 23.8 ms.
   const auto surprise = [](double time, double of_period, std::int64_t milliseconds) {
-    Watched watched = followed(20 * kMillisecond);
+    Watched watched = twoStarts(20 * kMillisecond);
     watched.tuning.least_effect = time;
     watched.tuning.least_effect_of_period = of_period;
     return surpriseOf(watched, kA, kB)(milliseconds * kMillisecond);
@@ -111,23 +98,18 @@ TEST(DelaySurprise, WhatASmallEffectIsCanBeSaid) {
 }
 
 TEST(DelaySurprise, ADelayNearZeroIsANeighbourOfAPeriod) {
-  const auto start = [](unsigned seed) {
-    return countsOf({later(together({timer(kA, 0, 100 * kSecond, 100 * kMillisecond),
-                                     timer(kB, kMillisecond, 100 * kSecond, 100 * kMillisecond)}),
-                           seed * kStart)},
-                    2);
-  };
-  const DelaySurprise surprise = surpriseOf(watch(start(1), start(2)), kA, kB);
+  const Events timers = together({timer(kA, 0, 100 * kSecond, 100 * kMillisecond),
+                                  timer(kB, kMillisecond, 100 * kSecond, 100 * kMillisecond)});
+  const DelaySurprise surprise = surpriseOf(watch(startOf(timers, 1), startOf(timers, 2)), kA, kB);
   EXPECT_LE(surprise(99 * kMillisecond), 0);
   EXPECT_GT(surprise(50 * kMillisecond), kLeastSurprise);
 }
 
 TEST(DelaySurprise, AGapMayDifferByMoreThanAnAnswer) {
   const auto start = [](unsigned seed) {
-    return countsOf({later(together({timer(kA, 0, 300 * kSecond, kSecond),
-                                     irregular(kB, 0, 300 * kSecond, 50 * kMillisecond, seed)}),
-                           seed * kStart)},
-                    2);
+    return startOf(together({timer(kA, 0, 300 * kSecond, kSecond),
+                             irregular(kB, 0, 300 * kSecond, 50 * kMillisecond, seed)}),
+                   seed);
   };
   const DelaySurprise surprise = surpriseOf(watch(start(1), start(2)), kA, kA);
   EXPECT_LE(surprise(1050 * kMillisecond), 0);

@@ -9,20 +9,17 @@
 #include <utility>
 #include <vector>
 
-#include "../recordings.h"
+#include "../judged.h"
+#include "channel_case.h"
 #include "core/evidence/channel/company.h"
-#include "core/evidence/channel/scorer.h"
 #include "core/evidence/watch/relations.h"
 #include "self_awareness/core/evidence/limits/limits.h"
-#include "self_awareness/core/learn.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/verdict/alarm.h"
-#include "self_awareness/core/verdict/detector.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr const char* kCompany = "company";
 constexpr EventId kPlan = 0;
 constexpr EventId kImu = 1;
 constexpr EventId kState = 2;
@@ -62,24 +59,18 @@ Events driving(std::int64_t begin, bool with_mode = true, std::int64_t planner_d
   return later(together({states, plans, timer(kImu, 7 * kMillisecond, kEnd, kPlanning)}), begin);
 }
 
-class ModeCompanyTest : public testing::Test {
+class ModeCompanyTest : public TrackTest {
  protected:
   void learn(const SourceGraph& graph = {}, const std::vector<EventType>& types = kRobot) {
     watched_ =
         watch(countsOf({driving(kStart)}, types), countsOf({driving(2 * kStart)}, types), graph);
-    model_ = std::make_shared<Model>(watched_);
-    track_ = indexOf(model_->tracks(), kCompany, kPlan, kDriving);
-    scorer_ = std::make_unique<Scorer>(model_, kWindow);
+    TrackTest::learn(watched_, kCompany, kPlan, kDriving);
   }
   bool watches(EventId to, EventId from) const {
     return isWatched(watched_.tracks, kCompany, to, from);
   }
-  double evidenceAt(std::int64_t stamp) { return scorer_->closeWindow(stamp)[track_]; }
 
   Watched watched_;
-  std::shared_ptr<const Model> model_;
-  std::size_t track_ = 0;
-  std::unique_ptr<Scorer> scorer_;
 };
 
 TEST_F(ModeCompanyTest, WhoPausesInOtherModesIsInCompanyWithOne) {
@@ -112,13 +103,8 @@ TEST_F(ModeCompanyTest, NobodyElseSeesAMode) {
       others.push_back(track);
     }
   }
-  ASSERT_EQ(others.size(), without.tracks.size());
+  expectSameTracks(others, without.tracks);
   const Model plain(without);
-  for (std::size_t k = 0; k < others.size(); ++k) {
-    EXPECT_EQ(channelName(others[k]), channelName(without.tracks[k]));
-    EXPECT_EQ(others[k].to, without.tracks[k].to);
-    EXPECT_EQ(others[k].from, without.tracks[k].from);
-  }
   EXPECT_EQ(model_->learned().delaysToAny()[kPlan], plain.learned().delaysToAny()[kPlan]);
   const SourceGraph graph;
   const Tuning tuning;
@@ -134,14 +120,11 @@ TEST_F(ModeCompanyTest, EvidenceIsTheTimeThatTheModeHasLasted) {
   scorer_->add({kSecond, kPlan});
   EXPECT_EQ(evidenceAt(kSecond), 0);
   EXPECT_EQ(evidenceAt(6 * kSecond), 5);
-  Suspect suspect;
-  suspect.id = kPlan;
-  scorer_->explain(track_, RecentEvents(5), suspect);
-  EXPECT_EQ(suspect.reason.kind, Kind::kDied);
-  EXPECT_EQ(suspect.reason.after, "/logic /state S[mode: DRIVING]");
-  EXPECT_EQ(suspect.reason.unit, unit::kSeconds);
-  EXPECT_EQ(suspect.reason.value, 5);
-  EXPECT_EQ(suspect.reason.words,
+  EXPECT_EQ(reason().kind, Kind::kDied);
+  EXPECT_EQ(reason().after, "/logic /state S[mode: DRIVING]");
+  EXPECT_EQ(reason().unit, unit::kSeconds);
+  EXPECT_EQ(reason().value, 5);
+  EXPECT_EQ(reason().words,
             "has not come for 5 s of the mode DRIVING (/state), in which it does not pause");
   scorer_->enter({7 * kSecond, kDocked});
   EXPECT_EQ(evidenceAt(100 * kSecond), 6) << "the other mode says nothing";
@@ -177,9 +160,7 @@ TEST_F(ModeCompanyTest, LimitsKnowTheModeThatLastsWhenTheClockIsSet) {
   finder.add({500 * kSecond, kDriving});
   finder.add({501 * kSecond, kPlan});
   finder.add({10 * kSecond, kPlan});
-  for (const Event& event : timer(kImu, 10 * kSecond, 30 * kSecond, kPlanning)) {
-    finder.add(event);
-  }
+  addAll(finder, timer(kImu, 10 * kSecond, 30 * kSecond, kPlanning));
   finder.add({30 * kSecond, kPlan});  // what it says of a silence that never ends is not known
   finder.add({31 * kSecond, kImu});
   finder.finish();
@@ -225,14 +206,8 @@ TEST_F(ModeCompanyTest, ItHasTheLeastLimitOfWhoComesEverySecond) {
 class ModeLearnedTest : public testing::Test {
  protected:
   static core::Model learned(bool with_mode) {
-    Learner learner;
-    for (const EventType& type : kRobot) {
-      learner.intern(type);
-    }
-    for (std::int64_t start = 1; start <= 4; ++start) {
-      learner.add({driving(start * kStart, with_mode), "normal"});
-    }
-    return learner.learn();
+    return learnedFrom(kRobot, {driving(kStart, with_mode), driving(2 * kStart, with_mode),
+                                driving(3 * kStart, with_mode), driving(4 * kStart, with_mode)});
   }
   /// The first alarm of a recording.
   static std::optional<Alarm> alarmIn(const core::Model& model, const Events& events) {
@@ -248,9 +223,7 @@ class ModeLearnedTest : public testing::Test {
       }
       EXPECT_EQ(verdict.window->unknown(), 0U);
     });
-    for (const Event& event : events) {
-      detector.add(event);
-    }
+    addAll(detector, events);
     detector.finish();
     EXPECT_TRUE(detector.unknown().empty());
     return first;
@@ -273,13 +246,9 @@ TEST_F(ModeLearnedTest, ADeathWhileDrivingIsFoundSoon) {
 
 TEST_F(ModeLearnedTest, NobodyWaitsForAMode) {
   const core::Model model = learned(true);
-  Detector detector(model.makeJudge(), model.window, {}, [&](const Verdict& verdict) {
+  judge(model.makeJudge(), driving(9 * kStart, false), [&](const Verdict& verdict) {
     EXPECT_FALSE(verdict.alarm || verdict.suspicion) << verdict.evidence;
   });
-  for (const Event& event : driving(9 * kStart, false)) {
-    detector.add(event);
-  }
-  detector.finish();
   const std::vector<Coverage> coverage = model.coverage();
   const auto logic = std::find_if(coverage.begin(), coverage.end(),
                                   [](const Coverage& each) { return each.component == "/logic"; });
@@ -310,15 +279,11 @@ TEST_F(ModeLearnedTest, WhoMissedAMessageOfTheModeDoesNotKnowIt) {
     bool alarm = false;
     Detector detector(model.makeJudge(), model.window, {},
                       [&](const Verdict& verdict) { alarm = alarm || verdict.alarm; });
-    for (const Event& event : driving(9 * kStart, true, dead)) {
-      if (event.stamp < 9 * kStart + dead) {
-        detector.add(event);
-      }
-    }
+    addAll(detector, without(driving(9 * kStart, true, dead), [&](const Event& event) {
+             return event.stamp >= 9 * kStart + dead;
+           }));
     detector.onMissed(missed, 9 * kStart + dead);
-    for (const Event& event : timer(kImu, dead, kCycle + kDrive, kPlanning)) {
-      detector.add({9 * kStart + event.stamp, event.id});
-    }
+    addAll(detector, later(timer(kImu, dead, kCycle + kDrive, kPlanning), 9 * kStart));
     detector.finish();
     return alarm;
   };
@@ -329,19 +294,13 @@ TEST_F(ModeLearnedTest, WhoMissedAMessageOfTheModeDoesNotKnowIt) {
 TEST_F(ModeLearnedTest, AModeThatTrainingNeverSawIsNeitherAStrangerNorAReason) {
   const core::Model model = learned(true);
   const auto unknown = static_cast<EventId>(kRobot.size());
-  Events events = driving(9 * kStart);
   // In the third drive something else is done for 15 s, and nothing is planned.
   const std::int64_t begin = 9 * kStart + 2 * kCycle + kSecond;
   const std::int64_t end = begin + 15 * kSecond;
-  events.erase(std::remove_if(events.begin(), events.end(),
-                              [&](const Event& event) {
-                                return event.id == kPlan && event.stamp >= begin &&
-                                       event.stamp < end;
-                              }),
-               events.end());
-  const Events silent = events;
-  events = together({events, {{begin, unknown}, {end, kDriving}}});
-  EXPECT_FALSE(alarmIn(model, events));
+  const Events silent = without(driving(9 * kStart), [&](const Event& event) {
+    return event.id == kPlan && event.stamp >= begin && event.stamp < end;
+  });
+  EXPECT_FALSE(alarmIn(model, together({silent, {{begin, unknown}, {end, kDriving}}})));
   EXPECT_TRUE(alarmIn(model, silent)) << "the same without the mode that is told";
 }
 

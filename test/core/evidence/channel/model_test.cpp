@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "../recordings.h"
+#include "../tracks.h"
 #include "core/evidence/count/log_bins.h"
 
 namespace self_awareness::core::evidence {
@@ -28,16 +28,6 @@ std::vector<double> binnedGaps(const Events& events) {
     gap = std::min(gap, longest);
   }
   return gaps;
-}
-
-// B comes 20 or 40 ms after A, which comes at random.
-Statistics pairCounts(unsigned seed) {
-  const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
-  Events answered = answers(kB, asked, 20 * kMillisecond);
-  for (std::size_t k = 0; k < answered.size(); k += 3) {
-    answered[k].stamp += 20 * kMillisecond;
-  }
-  return countsOf({later(together({asked, answered}), seed * kStart)}, 2);
 }
 
 TEST(EvidenceModel, NeedsAnEvent) {
@@ -79,17 +69,6 @@ TEST(EvidenceModel, OverdueRisesFromZeroWithoutEnd) {
   }
 }
 
-TEST(EvidenceModel, OverdueWeighsGapsByTheirLength) {
-  // 1000 gaps of 100 ms and one of 10 s: a tenth of the time lies in the long one.
-  Events events = timer(kA, 0, 100 * kSecond + 1, 100 * kMillisecond);
-  events.push_back({events.back().stamp + 10 * kSecond, kA});
-  const Model model(watch(countsOf({events}), kNothing));
-  const double of_time = std::exp(-model.overdue(kA, kSecond));
-  const double of_gaps = std::exp(model.logSurvival(kA, kSecond));
-  EXPECT_NEAR(of_time, 0.15, 0.02);  // the long gap and the tail beyond it
-  EXPECT_NEAR(of_gaps, 0.002, 0.0002);
-}
-
 TEST(EvidenceModel, ATypeThatNeverRepeatedHasNoEvidence) {
   const Model model(watch(countsOf({{{0, kA}, {kSecond, kB}, {2 * kSecond, kB}}}), kNothing));
   EXPECT_EQ(model.overdue(kA, 3600 * kSecond), 0);
@@ -108,7 +87,7 @@ TEST(EvidenceModel, SurvivalIsTheShareOfGapsAndATailBeyondThem) {
 }
 
 TEST(EvidenceModel, ANumberOutOfItsRangeIsRefused) {
-  Watched watched = watch(pairCounts(1), pairCounts(2));
+  Watched watched = watch(startOf(followed(1), 1), startOf(followed(2), 2));
   EXPECT_TRUE(Model(watched).tuning() == watched.tuning);
   watched.tuning.least_effect = -1e-9;
   EXPECT_THROW(Model{watched}, std::invalid_argument);
@@ -119,7 +98,7 @@ TEST(EvidenceModel, ANumberOutOfItsRangeIsRefused) {
 }
 
 TEST(EvidenceModel, ATrackOfNoChannelIsRefused) {
-  Watched watched = watch(pairCounts(1), pairCounts(2));
+  Watched watched = watch(startOf(followed(1), 1), startOf(followed(2), 2));
   watched.tracks.push_back({nullptr, kA, kA});
   EXPECT_THROW(Model{watched}, std::invalid_argument);
 }
@@ -132,28 +111,19 @@ TEST(EvidenceModel, KnowsTheLongestTimeWithoutAnyEvent) {
 }
 
 TEST(EvidenceModel, TheTracksStayWhateverProbabilitiesWereLearnedFrom) {
-  const Statistics first = pairCounts(1);
-  const Statistics second = pairCounts(2);
-  const Model both(watch(first, second));
-  const Model half(watch(first, second), Model::Learned::kFirst);
-  const Model other(watch(first, second), Model::Learned::kSecond);
-  ASSERT_EQ(both.tracks().size(), half.tracks().size());
-  for (std::size_t track = 0; track < both.tracks().size(); ++track) {
-    EXPECT_EQ(both.tracks()[track].channel, half.tracks()[track].channel);
-    EXPECT_EQ(both.tracks()[track].to, half.tracks()[track].to);
-    EXPECT_EQ(both.tracks()[track].from, half.tracks()[track].from);
-  }
+  const Statistics first = startOf(followed(1), 1);
+  const Watched watched = watch(first, startOf(followed(2), 2));
+  const Model both(watched);
+  const Model half(watched, Model::Learned::kFirst);
+  const Model other(watched, Model::Learned::kSecond);
+  expectSameTracks(both.tracks(), half.tracks());
   EXPECT_NE(half.overdue(kA, kSecond), other.overdue(kA, kSecond));
   EXPECT_DOUBLE_EQ(half.overdue(kA, kSecond), Model(watch(first, {})).overdue(kA, kSecond));
 }
 
 TEST(EvidenceModel, AHalfMayLackAnEventType) {
-  Statistics second;  // B alone, so that its id is another one
-  second.intern(kTypes[kB]);
-  Trainer trainer(second, kWindow);
-  for (const Event& event : timer(0, 0, 10 * kSecond, 100 * kMillisecond)) {
-    trainer.add(event);
-  }
+  const Statistics second =  // B alone, so that its id is another one
+      countsOf({timer(0, 0, 10 * kSecond, 100 * kMillisecond)}, {kTypes[kB]});
   const Statistics first = countsOf({timer(kA, 0, 10 * kSecond, 100 * kMillisecond)}, 1);
   const Model model(watch(first, second), Model::Learned::kSecond);
   EXPECT_EQ(model.overdue(kA, kSecond), 0);
@@ -193,13 +163,6 @@ TEST(EvidenceModel, UsualDelaysAreEstimatedWithinTheirBin) {
   for (const double share : {0.05, 0.3, 0.5, 0.8, 0.95}) {
     EXPECT_NEAR(model.usualDelay(kA, kB, share), 20e6 + 3.8e6 * share, 1e5) << share;
   }
-}
-
-TEST(EvidenceModel, UsualDelaysAreThoseThatAShareDidNotExceed) {
-  const Model model(watch(pairCounts(1), pairCounts(2)));
-  EXPECT_NEAR(model.usualDelay(kA, kB, 0.05), 20e6, 4e6);
-  EXPECT_NEAR(model.usualDelay(kA, kB, 0.60), 20e6, 4e6);
-  EXPECT_NEAR(model.usualDelay(kA, kB, 0.95), 40e6, 8e6);
 }
 
 }  // namespace

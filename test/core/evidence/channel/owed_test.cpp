@@ -5,37 +5,26 @@
 #include <cmath>
 #include <memory>
 
-#include "../recordings.h"
-#include "core/evidence/channel/scorer.h"
+#include "channel_case.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-class OwedTest : public testing::Test {
+class OwedTest : public TrackTest {
  protected:
   // Requests of A at random with a mean gap; each is answered by B after a tenth of it.
   void learn(std::int64_t gap) {
-    const auto start = [&](unsigned seed) {
+    learn([&](unsigned seed) {
       const Events asked = irregular(kA, 0, 200 * gap, gap, seed);
-      return countsOf({later(together({asked, answers(kB, asked, gap / 10)}), seed * 10 * kStart)},
-                      2);
-    };
-    model_ = std::make_shared<Model>(watch(start(1), start(2)));
-    owed_ = indexOf(model_->tracks(), kDeadlines, kB, kA);
-    ASSERT_LT(owed_, model_->tracks().size());
-    scorer_ = std::make_unique<Scorer>(model_, kWindow);
+      return together({asked, answers(kB, asked, gap / 10)});
+    });
   }
-  double evidenceAt(std::int64_t stamp) { return scorer_->closeWindow(stamp)[owed_]; }
-  Suspect suspect() const {
-    Suspect suspect;
-    suspect.id = kB;
-    scorer_->explain(owed_, RecentEvents(2), suspect);
-    return suspect;
+  // @param start the events of one, by its seed
+  template <typename Start>
+  void learn(const Start& start) {
+    TrackTest::learn(watch(startOf(start(1), 10), startOf(start(2), 20)), kDeadlines, kB, kA);
+    ASSERT_LT(track_, model_->tracks().size());
   }
-
-  std::shared_ptr<const Model> model_;
-  std::size_t owed_ = 0;
-  std::unique_ptr<Scorer> scorer_;
 };
 
 TEST_F(OwedTest, RareRequestsAreCountedInSecondsSinceTheFirst) {
@@ -48,14 +37,14 @@ TEST_F(OwedTest, RareRequestsAreCountedInSecondsSinceTheFirst) {
   EXPECT_DOUBLE_EQ(evidenceAt(31 * kSecond), 1);
   scorer_->add({35 * kSecond, kA});
   EXPECT_DOUBLE_EQ(evidenceAt(36 * kSecond), 6) << "since the first one without an answer";
-  EXPECT_EQ(suspect().reason.kind, Kind::kDied);
-  EXPECT_DOUBLE_EQ(suspect().reason.value, 6);
-  EXPECT_DOUBLE_EQ(suspect().reason.silence, 16) << "since the last B";
-  EXPECT_EQ(suspect().reason.words, "has not come for 6.00 s after /a /x T");
+  EXPECT_EQ(reason().kind, Kind::kDied);
+  EXPECT_DOUBLE_EQ(reason().value, 6);
+  EXPECT_DOUBLE_EQ(reason().silence, 16) << "since the last B";
+  EXPECT_EQ(reason().words, "has not come for 6.00 s after /a /x T");
   EXPECT_DOUBLE_EQ(evidenceAt(50 * kSecond), 20) << "judged on a timer, not at the next request";
   scorer_->add({50 * kSecond, kB});
   EXPECT_EQ(evidenceAt(60 * kSecond), 0);
-  EXPECT_EQ(suspect().reason.value, 0);
+  EXPECT_EQ(reason().value, 0);
 }
 
 TEST_F(OwedTest, ABurstOfRareRequestsIsOneQuestion) {
@@ -90,16 +79,16 @@ TEST_F(OwedTest, SeriesOfRequestsAreCounted) {
     scorer_->add({k * kSecond, kA});
   }
   EXPECT_EQ(evidenceAt(100 * kSecond), 10) << "time alone is no request";
-  EXPECT_EQ(suspect().reason.value, 10);
-  EXPECT_EQ(suspect().reason.unit, unit::kRequests);
-  EXPECT_EQ(suspect().reason.words, "has not come after the last 10 /a /x T");
+  EXPECT_EQ(reason().value, 10);
+  EXPECT_EQ(reason().unit, unit::kRequests);
+  EXPECT_EQ(reason().words, "has not come after the last 10 /a /x T");
   scorer_->add({100 * kSecond, kB});
   EXPECT_EQ(evidenceAt(101 * kSecond), 0);
 }
 
 TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
   constexpr std::int64_t kGap = 8 * kSecond;
-  const auto start = [&](unsigned seed) {
+  learn([](unsigned seed) {
     const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
     Events answered;
     for (std::size_t k = 0; k < asked.size(); ++k) {
@@ -107,40 +96,28 @@ TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
         answered.push_back(asked[k]);
       }
     }
-    return countsOf(
-        {later(together({asked, answers(kB, answered, kGap / 10)}), seed * 10 * kStart)}, 2);
-  };
-  model_ = std::make_shared<Model>(watch(start(1), start(2)));
-  owed_ = indexOf(model_->tracks(), kDeadlines, kB, kA);
-  ASSERT_LT(owed_, model_->tracks().size());
-  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_requests);
+    return together({asked, answers(kB, answered, kGap / 10)});
+  });
+  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
 }
 
 TEST_F(OwedTest, ARequestThatTheNextOneOvertakesIsNoneWithoutAnAnswer) {
   constexpr std::int64_t kGap = 8 * kSecond;
-  const auto start = [&](unsigned seed) {
+  learn([](unsigned seed) {
     const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
-    return countsOf(
-        {later(together({asked, answers(kB, asked, kGap * 3 / 10)}), seed * 10 * kStart)}, 2);
-  };
-  model_ = std::make_shared<Model>(watch(start(1), start(2)));
-  owed_ = indexOf(model_->tracks(), kDeadlines, kB, kA);
-  ASSERT_LT(owed_, model_->tracks().size());
+    return together({asked, answers(kB, asked, kGap * 3 / 10)});
+  });
   EXPECT_GT(missRate(model_->statistics().type(kA).gaps, model_->statistics().answers(kA, kB)),
             model_->tuning().rare_misses);
-  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_deadline);
+  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_deadline);
 }
 
 TEST_F(OwedTest, WhatWaitedInAStallIsNoRequest) {
-  const auto start = [](unsigned seed) {
+  learn([](unsigned seed) {
     const Events asked = irregular(kA, 0, 100 * kSecond, 500 * kMillisecond, seed);
-    return countsOf({later(together({asked, answers(kB, asked, 50 * kMillisecond),
-                                     timer(kC, 0, 100 * kSecond, 20 * kMillisecond)}),
-                           seed * kStart)});
-  };
-  model_ = std::make_shared<Model>(watch(start(1), start(2)));
-  owed_ = indexOf(model_->tracks(), kDeadlines, kB, kA);
-  ASSERT_LT(owed_, model_->tracks().size());
+    return together({asked, answers(kB, asked, 50 * kMillisecond),
+                     timer(kC, 0, 100 * kSecond, 20 * kMillisecond)});
+  });
   for (const std::int64_t silence : {10 * kMillisecond, 300 * kMillisecond}) {
     scorer_ = std::make_unique<Scorer>(model_, kWindow);
     scorer_->add({0, kA});
@@ -159,19 +136,11 @@ TEST_F(OwedTest, WhoeverAnswersSoonestIsAskedFirst) {
   const auto start = [&](unsigned seed) {
     const Events asked = irregular(kC, 0, 1600 * kSecond, 8 * kSecond, seed);
     const Events middle = answers(kA, asked, 400 * kMillisecond);
-    return countsOf({later(together({asked, middle, answers(kB, middle, 100 * kMillisecond)}),
-                           seed * 10 * kStart)});
+    return startOf(together({asked, middle, answers(kB, middle, 100 * kMillisecond)}), 10 * seed);
   };
   const Model model(watch(start(1), start(2), SourceGraph(), tuning));
   EXPECT_LT(indexOf(model.tracks(), kDeadlines, kB, kA), model.tracks().size());
   EXPECT_EQ(indexOf(model.tracks(), kDeadlines, kB, kC), model.tracks().size());
-}
-
-TEST_F(OwedTest, TheLeastLimitIsInSecondsOrInRequests) {
-  learn(8 * kSecond);
-  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_deadline);
-  learn(500 * kMillisecond);
-  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_requests);
 }
 
 TEST_F(OwedTest, ARestartForgetsRequests) {

@@ -24,9 +24,9 @@ class OwnGapsTest : public ChannelTest {
   }
 
   static Statistics timerAmongOthers(unsigned seed) {
-    return countsOf({later(together({timer(kA, 0, 100 * kSecond, kPeriod),
-                                     irregular(kC, 0, 100 * kSecond, 50 * kMillisecond, seed)}),
-                           seed * kStart)});
+    return startOf(together({timer(kA, 0, 100 * kSecond, kPeriod),
+                             irregular(kC, 0, 100 * kSecond, 50 * kMillisecond, seed)}),
+                   seed);
   }
   // Adds an A so long after the last one; until then, the robot is not silent.
   void wait(std::int64_t gap) {
@@ -65,8 +65,8 @@ TEST_F(OwnGapsTest, ASumThatReachedItsCapHasNoLimit) {
   const Expectation& expected = model_->expectation(gaps_);
   EXPECT_EQ(expected.limit(gaps_, DelaySum::kMost - 1, 300), 300);
   EXPECT_TRUE(std::isnan(expected.limit(gaps_, DelaySum::kMost, 300)));
-  const Limits limits{std::vector<double>(model_->tracks().size(), std::nan("")), {}};
-  const std::vector<Coverage> coverage = coverageOf(*model_, limits, {}, kWindow, false);
+  const std::vector<Coverage> coverage =
+      coverageOf(*model_, allLimits(*model_, kNone), {}, kWindow, false);
   ASSERT_EQ(coverage[model_->componentIndex(kA)].blind.size(), 1U);
   EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].about, "pace");
   EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].topic, kTypes[kA].scope);

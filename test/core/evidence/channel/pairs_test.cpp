@@ -67,14 +67,6 @@ TEST_F(PairsTest, DelaysAddUpAsInACusumTest) {
   EXPECT_GT(sum, 0);
 }
 
-TEST_F(PairsTest, EvidenceIsBounded) {
-  askUsually(kArming);
-  for (int i = 0; i < 1000; ++i) {
-    ask(kUnusual);
-  }
-  EXPECT_EQ(evidence(), DelaySum::kMost);
-}
-
 TEST_F(PairsTest, NoSumGrowsFarBeyondItsLimit) {
   useLimits();
   askUsually(kArming);
@@ -111,45 +103,6 @@ TEST_F(PairsTest, DelaysThatNeverWereAsInTrainingSayNothing) {
     ask(kUnusual);
   }
   EXPECT_EQ(evidence(), 0);
-}
-
-TEST_F(PairsTest, DelaysCountOnceTheyWereAsInTraining) {
-  for (int i = 0; i < kArming; ++i) {
-    ask(kUnusual);
-  }
-  askUsually(2 * kArming - 1);  // after a failure it takes twice as many
-  ask(kUsual);                  // armed with this one
-  for (int i = 0; i < 10; ++i) {
-    ask(kUnusual);
-  }
-  EXPECT_GT(evidence(), model_->leastLimit(pair_));
-}
-
-TEST_F(PairsTest, FewerEventsThanNeededDoNotArm) {
-  askUsually(kArming - 2);
-  ask(kUnusual);
-  EXPECT_EQ(evidence(), 0);
-  ask(kUsual);  // one unusual delay of thirty is as in training
-  ask(kUnusual);
-  EXPECT_GT(evidence(), 0);
-}
-
-TEST_F(PairsTest, EveryFailureToArmDoublesTheEventsThatItTakes) {
-  useLimits();
-  for (int failures = 0; failures < 4; ++failures) {
-    restart();
-    for (int failed = 0; failed < failures; ++failed) {
-      for (int i = 0; i < kArming << failed; ++i) {
-        ask(kUnusual);
-      }
-    }
-    askUsually((kArming << failures) - 2);
-    ask(kUnusual);
-    EXPECT_EQ(evidence(), 0) << failures;
-    ask(kUsual);  // armed with this one
-    ask(kUnusual);
-    EXPECT_GT(evidence(), 0) << failures;
-  }
 }
 
 TEST_F(PairsTest, LateAnswersAreNewsOnceAndThenAccepted) {
@@ -197,20 +150,6 @@ TEST_F(PairsTest, WhatIsUsualAgainInBetweenIsNewsAgain) {
     EXPECT_EQ(evidence(), 0) << times;
   }
   EXPECT_GT(abnormal, kAccepted * 3 / 2);
-}
-
-TEST_F(PairsTest, ALoadThatStaysIsTheNewUsual) {
-  // Every fourth answer is late: for some minutes that is evidence, then it is the regime.
-  const auto loaded = [](int number) { return number % 4 == 0 ? kUnusual : kUsual; };
-  askUsually(kArming);
-  EXPECT_GT(abnormalFor(100 * kSecond, loaded), 0);
-  abnormalFor(1000 * kSecond, loaded);
-  EXPECT_LT(abnormalFor(300 * kSecond, loaded), kSecond);
-  // What is worse than that is still found.
-  for (int i = 0; i < 10; ++i) {
-    ask(kUnusual);
-  }
-  EXPECT_GT(evidence(), kLimit);
 }
 
 TEST_F(PairsTest, ASuspectIsToldOfByTheDelaysSinceTheSumWasZero) {
@@ -276,21 +215,6 @@ TEST_F(PairsTest, OfAStalePredecessorOneDelayIsTold) {
   }
   EXPECT_EQ(suspect().reason.of, 1U);
   EXPECT_DOUBLE_EQ(suspect().reason.value, 1e-9 * kLate);
-}
-
-TEST_F(PairsTest, DelaysOnBothSidesAreScattered) {
-  askUsually(50);
-  for (int i = 0; i < 10; ++i) {
-    ask(i % 2 == 0 ? kEarly : kLate);
-  }
-  EXPECT_EQ(suspect().reason.times, 10U);
-  EXPECT_EQ(suspect().reason.kind, Kind::kOutOfOrder);
-  EXPECT_EQ(suspect().reason.words.find("earlier or later than usual 10 times of 10"), 8U)
-      << suspect().reason.words;
-  for (int i = 0; i < 40; ++i) {
-    ask(kLate);
-  }
-  EXPECT_EQ(suspect().reason.kind, Kind::kLate) << "nearly all of them are late";
 }
 
 TEST_F(PairsTest, WhatIsToldIsWhatTheSumSaw) {

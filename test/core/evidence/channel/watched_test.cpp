@@ -30,20 +30,8 @@ Statistics twoTimers(std::int64_t phase) {
                              irregular(kC, 0, kLength, 50 * kMillisecond, 1)})});
 }
 
-// A comes at random, and B follows it.
-Statistics followed(unsigned seed) {
-  const Events asked = irregular(kA, 0, kLength, 200 * kMillisecond, seed);
-  return countsOf({later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)},
-                  2);
-}
-
 Statistics gapsOf(EventId id, std::int64_t gaps) {
   return countsOf({timer(id, 0, gaps * kSecond + 1, kSecond)});
-}
-
-TEST(EvidenceTracks, APairWithAStableDelayIsChosen) {
-  const std::vector<Track> tracks = chosen(followed(1), followed(2));
-  EXPECT_TRUE(isWatched(tracks, kPairs, kB, kA));
 }
 
 TEST(EvidenceTracks, APhaseThatOneHalfDoesNotConfirmIsNot) {
@@ -81,20 +69,11 @@ TEST(EvidenceTracks, FewDelaysAreNoPair) {
 TEST(EvidenceTracks, TheBestPredecessorsAreWatched) {
   constexpr EventId kNumber = 6;
   const Events asked = irregular(0, 0, kLength, 200 * kMillisecond, 1);
-  Statistics counts;
   Events events;
   for (EventId id = 0; id < kNumber; ++id) {  // one after the other
-    counts.intern({"/" + std::to_string(id), "/topic", "T"});
     events = together({events, answers(id, asked, 3 * kMillisecond * id)});
   }
-  Trainer trainer(counts, kWindow);
-  for (const std::int64_t start : {std::int64_t{0}, kStart}) {
-    trainer.startRecording();
-    for (const Event& event : later(events, start)) {
-      trainer.add(event);
-    }
-  }
-  trainer.finish();
+  const Statistics counts = countsOf({events, later(events)}, numberedTypes(kNumber));
   const InformationGain gain(counts, counts, kFewestDelays);
   const std::vector<Track> tracks = chosen(counts, counts);
   for (EventId to = 1; to < kNumber; ++to) {
@@ -114,7 +93,7 @@ TEST(EvidenceTracks, TheBestPredecessorsAreWatched) {
 }
 
 TEST(EvidenceTracks, AsManyPredecessorsAreWatchedAsAreAskedFor) {
-  const Statistics counts = followed(1);
+  const Statistics counts = startOf(followed(1, kLength), 1);
   for (const std::size_t predecessors : {0U, 1U}) {
     Tuning tuning;
     set(tuning, "predecessors", static_cast<double>(predecessors));
@@ -178,28 +157,20 @@ TEST(EvidenceTracks, WhatIsLeftOutTooOftenIsNotOwed) {
   EXPECT_FALSE(isWatched(chosen(requests(2)), kDeadlines, kB, kA)) << "1 in 2";
 }
 
-TEST(EvidenceTracks, WhatComesByChanceIsNotOwed) {
-  const Statistics counts =
-      countsOf({together({irregular(kA, 0, 10 * kLength, 50 * kMillisecond, 2),
-                          irregular(kB, 0, 10 * kLength, 2 * kSecond, 1)})},
-               2);
-  ASSERT_LT(missRate(counts.type(kB).gaps, counts.answers(kB, kA)), Tuning{}.most_misses);
-  EXPECT_FALSE(isWatched(chosen(counts), kDeadlines, kA, kB)) << "A comes often, whatever B does";
-}
-
 TEST(EvidenceTracks, TheChannelsComeInTheirOrder) {
   const std::vector<std::string> names = channelNames();
   const auto place = [&](const Track& track) {
     return std::find(names.begin(), names.end(), channelName(track)) - names.begin();
   };
-  const std::vector<Track> tracks = chosen(followed(1), followed(2));
+  const std::vector<Track> tracks =
+      chosen(startOf(followed(1, kLength), 1), startOf(followed(2, kLength), 2));
   EXPECT_TRUE(std::is_sorted(tracks.begin(), tracks.end(),
                              [&](const Track& a, const Track& b) { return place(a) < place(b); }));
   EXPECT_EQ(channelName(tracks.front()), names.front());
 }
 
 TEST(EvidenceTracks, AChannelThatIsSwitchedOffMustExist) {
-  const Statistics counts = followed(1);
+  const Statistics counts = startOf(followed(1, kLength), 1);
   Tuning tuning;
   tuning.without = {kMore, "smell"};
   try {

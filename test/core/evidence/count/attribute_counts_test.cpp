@@ -97,35 +97,13 @@ TEST(AttributeCounts, WhatATypeSaysFirstDoesNotCount) {
 }
 
 TEST(AttributeCounts, AStartIsThatOfTheRecording) {
-  Statistics counts;
-  counts.intern(kTypes[kA]);
+  Statistics counts = countsOf({}, 1);
   Trainer trainer(counts, kWindow);
   trainer.startRecording();
   trainer.addBefore({kStart - 10 * kSecond, kA});
-  for (const Event& event : messages(kA, kStart, kStart + 100 * kSecond, {})) {
-    trainer.add(event);
-  }
+  addAll(trainer, messages(kA, kStart, kStart + 100 * kSecond, {}));
   trainer.finish();
   EXPECT_EQ(counts.type(kA).attributes.counted(), 1000U);
-}
-
-TEST(AttributeCounts, APauseRepeatsNothing) {
-  const auto recording = [](std::int64_t pause) {
-    Events events =
-        together({messages(kA, kStart, kStart + 20 * kSecond, {}),
-                  messages(kA, kStart + 20 * kSecond + pause, kStart + 40 * kSecond + pause, {})});
-    for (std::size_t k = 199; k < 210; ++k) {
-      events[k].attributes.same = true;  // of which the second one comes after the pause
-    }
-    return events;
-  };
-  const auto longest = [](const Statistics& counts) {
-    return toSeconds(counts.type(kA).attributes.longest_repeat);
-  };
-  EXPECT_NEAR(longest(countsOf({recording(31 * kSecond)}, 1)), 1.1, 0.01);
-  Statistics sum = countsOf({recording(31 * kSecond)}, 1);
-  sum.merge(countsOf({later(recording(60 * kSecond))}, 1));
-  EXPECT_TRUE(sum == countsOf({recording(31 * kSecond), later(recording(60 * kSecond))}, 1));
 }
 
 TEST(Repeats, APauseCountsNoMoreThanIsSaid) {
@@ -138,14 +116,10 @@ TEST(Repeats, APauseCountsNoMoreThanIsSaid) {
   EXPECT_EQ(repeats.add(61 * kSecond, {}, kSecond), 0);
 }
 
-TEST(AttributeCounts, OfUnknownMessagesThereAreNone) {
-  const Statistics counts = countsOf({timer(kA, kStart, kStart + 100 * kSecond, kSecond)}, 1);
-  EXPECT_EQ(counts.type(kA).attributes, AttributeCounts{});
-}
-
 TEST(AttributeCounts, AddUp) {
   Source source;
   source.spread = 1;
+  source.repeats = true;
   const Events one = messages(kA, kStart, kStart + 100 * kSecond, source, 1);
   const Events other = later(messages(kA, kStart, kStart + 50 * kSecond, source, 2));
   Statistics sum = countsOf({one}, 1);

@@ -72,12 +72,6 @@ TEST(EvidenceTrainer, CountsDelaysGapsAndAnswers) {
   EXPECT_EQ(counts.answers(kB, kA), 1U);  // between the first two B, none between the last two
 }
 
-TEST(EvidenceTrainer, NoDelaysWhereNoneWasSeen) {
-  const Statistics counts = countsOf({inMilliseconds({{0, kA}, {10, kB}})}, 2);
-  EXPECT_EQ(counts.total(kB, kA), 0U);
-  EXPECT_EQ(counts.total(kA, kB), 1U);
-}
-
 TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
   Statistics counts;
   counts.intern(kTypes[kA]);
@@ -312,13 +306,6 @@ TEST(EvidenceTrainer, TheModeLastsOverAStepOfTheClock) {
   EXPECT_EQ(counts.type(kTwo).gaps, 2U);
 }
 
-TEST(EvidenceTrainer, AfterAStepOfTheClockTheStartIsAnother) {
-  const Statistics counts =
-      countsOf({inMilliseconds({{1000, kA}, {1010, kA}, {10, kB}, {30, kA}})});
-  ASSERT_EQ(counts.recordings().size(), 2U);
-  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{20 * kMillisecond, 0}));
-}
-
 TEST(EvidenceStatistics, FirstTimesMeetTheirTypes) {
   Statistics other;
   other.intern(kTypes[kC]);
@@ -357,15 +344,7 @@ TEST(EvidenceStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
 
 TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
   const Statistics first = countsOf({randomEvents(1, kA, kB)}, 2);
-  Statistics second;  // kTypes in the opposite order
-  for (const EventId id : {kC, kB}) {
-    second.intern(kTypes[id]);
-  }
-  Trainer trainer(second, kWindow);
-  for (const Event& event : randomEvents(2, 0, 1)) {
-    trainer.add(event);
-  }
-  trainer.finish();
+  const Statistics second = countsOf({randomEvents(2, 0, 1)}, {kTypes[kC], kTypes[kB]});
   Statistics one = first;
   one.merge(second);
   Statistics other = second;
@@ -388,17 +367,6 @@ TEST(EvidenceStatistics, MergingKeepsTheRecordingsOfBothByTheirIds) {
   EXPECT_EQ(counts.recordings()[0].longest_stall, 0);
   EXPECT_EQ(counts.recordings()[1].events, (std::vector<std::uint64_t>{2, 1}));
   EXPECT_EQ(counts.only({}).recordings().size(), 2U);
-}
-
-TEST(EvidenceStatistics, CountsDoNotWrapAround) {
-  Statistics counts = countsOf({}, 1);
-  Partner partner;
-  partner.delays[3] = 3000000000U;
-  partner.delays[4] = 2000000000U;
-  counts.setPartners(kA, partnersOf({partner}));
-  counts.merge(Statistics(counts));
-  EXPECT_EQ(counts.delays(kA, kA)[3], 4294967295U);
-  EXPECT_EQ(counts.delays(kA, kA)[4], 4000000000U);
 }
 
 TEST(EvidenceStatistics, PartnersComeInOrder) {

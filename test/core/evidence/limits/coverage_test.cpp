@@ -2,23 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
-#include "../recordings.h"
+#include "../tracks.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kLength = 100 * kSecond;
 
 // A comes irregularly, B follows it, and C comes too seldom to be judged.
 Events robot(unsigned seed) {
-  const Events asked = irregular(kA, 0, kLength, 200 * kMillisecond, seed);
-  return together(
-      {asked, answers(kB, asked, 20 * kMillisecond), timer(kC, 0, kLength, 20 * kSecond)});
+  return together({followed(seed, kLength), timer(kC, 0, kLength, 20 * kSecond)});
 }
 
 class CoverageTest : public testing::Test {
@@ -28,11 +24,11 @@ class CoverageTest : public testing::Test {
     return coverages_.at(model_.componentIndex(id));
   }
   double& limit(const char* channel, EventId to, EventId from) {
-    return limits_.at(indexOf(model_.tracks(), channel, to, from));
+    return ofTrack(limits_, model_, channel, to, from);
   }
 
   const Model model_{watch(countsOf({robot(1)}), countsOf({later(robot(2))}))};
-  std::vector<double> limits_ = std::vector<double>(model_.tracks().size(), kNone);
+  std::vector<double> limits_ = allTracks(model_, kNone);
   std::vector<Relation> relations_;
   bool knows_graph_ = false;
   std::vector<Coverage> coverages_;

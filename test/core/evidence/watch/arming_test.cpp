@@ -4,10 +4,11 @@
 
 #include <cstdint>
 
+#include "../recordings.h"
+
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr std::int64_t kSecond = 1000000000;
 constexpr double kUsual = -0.5;
 constexpr double kUnusual = 5;
 

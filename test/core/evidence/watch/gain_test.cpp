@@ -13,13 +13,6 @@ namespace {
 constexpr std::int64_t kLength = 60 * kSecond;
 constexpr double kFewestDelays = 50;
 
-// A comes at random, and B follows it.
-Statistics followed(unsigned seed) {
-  const Events asked = irregular(kA, 0, kLength, 200 * kMillisecond, seed);
-  return countsOf({later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)},
-                  2);
-}
-
 // So many delays after one event type, by bin.
 Partners after(EventId from, const std::map<std::size_t, std::uint32_t>& counts) {
   Partner partner;
@@ -46,15 +39,15 @@ TEST(InformationGain, IsTheMeanLogRatioOnTheOtherHalf) {
 }
 
 TEST(InformationGain, IsZeroForATypeThatTheOtherHalfLacks) {
-  const Statistics learned = followed(1);
+  const Statistics learned = startOf(followed(1, kLength), 1);
   const Statistics measured = countsOf({irregular(kA, 0, kLength, 200 * kMillisecond, 2)}, 1);
   EXPECT_GT(InformationGain(learned, learned, kFewestDelays)(kA, kB), 0.3);
   EXPECT_EQ(InformationGain(learned, measured, kFewestDelays)(kA, kB), 0);
 }
 
 TEST(Gains, AreTheMeanOfLearningFromEitherHalf) {
-  const Statistics first = followed(1);
-  const Statistics second = followed(2);
+  const Statistics first = startOf(followed(1, kLength), 1);
+  const Statistics second = startOf(followed(2, kLength), 2);
   const Gains gains({&first, &second}, kFewestDelays);
   const InformationGain one(first, second, kFewestDelays);
   const InformationGain other(second, first, kFewestDelays);

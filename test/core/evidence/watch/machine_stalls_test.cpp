@@ -5,14 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "self_awareness/core/evidence/count/statistics.h"
+#include "../recordings.h"
 
 namespace self_awareness::core::evidence {
 namespace {
-
-constexpr std::int64_t kMillisecond = 1000000;
-constexpr std::int64_t kSecond = 1000 * kMillisecond;
-constexpr std::int64_t kStart = 100 * kSecond;
 
 // A robot that is heard every 20 ms.
 class MachineStallsTest : public testing::Test {

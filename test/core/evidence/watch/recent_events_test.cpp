@@ -22,18 +22,6 @@ std::vector<std::pair<std::int64_t, EventId>> of(const RecentEvents& events, Eve
 
 using Expected = std::vector<std::pair<std::int64_t, EventId>>;
 
-TEST(RecentEvents, AreThoseOfTwoTypesInTheirOrder) {
-  RecentEvents events(kTypes);
-  EXPECT_TRUE(events.of(0, 1).empty());
-  for (const Event& event :
-       std::vector<Event>{{10, 0}, {11, 2}, {12, 1}, {13, 1}, {14, 0}, {15, 2}, {16, 1}}) {
-    events.add(event, false);
-  }
-  EXPECT_EQ(of(events, 0, 1), (Expected{{10, 0}, {12, 1}, {13, 1}, {14, 0}, {16, 1}}));
-  EXPECT_EQ(of(events, 1, 0), of(events, 0, 1));
-  EXPECT_EQ(of(events, 2, 2), (Expected{{11, 2}, {15, 2}})) << "each once";
-}
-
 TEST(RecentEvents, AreCountedSinceTheLastOneOfAnotherType) {
   RecentEvents events(kTypes);
   EXPECT_EQ(events.since(0, 1), 0U);
@@ -75,15 +63,6 @@ TEST(RecentEvents, AreTheLastOnesOnly) {
   EXPECT_EQ(events.of(0, 0).size(), RecentEvents::kMost);
   events.add({1000001, 1}, false);
   EXPECT_EQ(of(events, 1, 1), (Expected{{1000001, 1}})) << "the other one is too long ago";
-}
-
-TEST(RecentEvents, ARestartForgetsThem) {
-  RecentEvents events(kTypes);
-  events.add({10, 0}, false);
-  events.restart();
-  EXPECT_TRUE(events.of(0, 0).empty());
-  events.add({5, 0}, false);
-  EXPECT_EQ(of(events, 0, 0), (Expected{{5, 0}}));
 }
 
 }  // namespace

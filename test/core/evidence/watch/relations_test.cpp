@@ -52,6 +52,15 @@ SourceGraph connected(const std::string& topic, int listeners = 1) {
   return graph;
 }
 
+Relation delays(const Statistics& counts, const SourceGraph& graph = kNoGraph, EventId from = kA,
+                EventId to = kB) {
+  return Relations(counts, graph, kTuning).delays(from, to);
+}
+
+bool isOwed(const Statistics& counts, const SourceGraph& graph = kNoGraph) {
+  return Relations(counts, graph, kTuning).owed(kA, kB).watched;
+}
+
 TEST(MissRate, IsNeverQuiteZeroOrOne) {
   EXPECT_DOUBLE_EQ(missRate(99, 80), 0.195);
   EXPECT_DOUBLE_EQ(missRate(99, 99), 0.005);
@@ -107,38 +116,16 @@ TEST(Samples, AreRobotsWhereTheyAreSeveralElseStarts) {
       << "who has no name is another one";
 }
 
-TEST(Relations, TheOwnHistoryNeedsNoReason) {
-  const Statistics counts = timers({20 * kMillisecond});
-  EXPECT_TRUE(Relations(counts, kNoGraph, kTuning).delays(kA, kA).watched);
-}
-
-TEST(Relations, TimersThatAgreeInFewStartsMayDoSoByChance) {
-  const std::vector<std::int64_t> phases(6, 20 * kMillisecond);
-  std::vector<bool> watched;
-  for (std::size_t starts = 1; starts <= phases.size(); ++starts) {
-    const Statistics counts = timers({phases.begin(), phases.begin() + starts});
-    const Relation relation = Relations(counts, kNoGraph, kTuning).delays(kA, kB);
-    EXPECT_EQ(relation.starts, starts);
-    EXPECT_LT(relation.spread, 0.1);
-    EXPECT_FALSE(relation.reaches || relation.irregular);
-    EXPECT_EQ(relation.starts_needed == 0, relation.watched);
-    EXPECT_TRUE(relation.watched || relation.starts_needed > starts);
-    watched.push_back(relation.watched);
-  }
-  EXPECT_FALSE(watched.front());
-  EXPECT_TRUE(watched.back());
-}
-
 TEST(Relations, AsManyStartsAreEnoughAsItSaysAreNeeded) {
   const std::vector<std::int64_t> phases(10, 20 * kMillisecond);
   const Statistics one = timers({phases.front()});
-  const std::size_t needed = Relations(one, kNoGraph, kTuning).delays(kA, kB).starts_needed;
+  const std::size_t needed = delays(one).starts_needed;
   ASSERT_GT(needed, 1U);
   ASSERT_LT(needed, phases.size());
   const auto watchedAfter = [&](std::size_t starts) {
     const Statistics counts =
         timers({phases.begin(), phases.begin() + static_cast<std::ptrdiff_t>(starts)});
-    return Relations(counts, kNoGraph, kTuning).delays(kA, kB).watched;
+    return delays(counts).watched;
   };
   EXPECT_FALSE(watchedAfter(needed - 1));
   EXPECT_TRUE(watchedAfter(needed));
@@ -150,7 +137,7 @@ TEST(Relations, TimersThatDoNotAgreeAreNotWatchedAfterAnyNumberOfStarts) {
     phases.push_back((start * 37 % 100) * kMillisecond);
   }
   const Statistics counts = timers(phases);
-  const Relation relation = Relations(counts, kNoGraph, kTuning).delays(kA, kB);
+  const Relation relation = delays(counts);
   EXPECT_EQ(relation.starts, 20U);
   EXPECT_GT(relation.spread, 0.8);
   EXPECT_FALSE(relation.watched);
@@ -161,8 +148,7 @@ TEST(Relations, OneStartThatDiffersCountsHoweverManyAgree) {
   const Statistics agree = timers(phases);
   phases.push_back(70 * kMillisecond);
   const Statistics differ = timers(phases);
-  EXPECT_GT(Relations(differ, kNoGraph, kTuning).delays(kA, kB).spread,
-            5 * Relations(agree, kNoGraph, kTuning).delays(kA, kB).spread);
+  EXPECT_GT(delays(differ).spread, 5 * delays(agree).spread);
 }
 
 TEST(Relations, RecordingsOfOneStartAreNoNewEvidence) {
@@ -173,7 +159,7 @@ TEST(Relations, RecordingsOfOneStartAreNoNewEvidence) {
         part * (kLength + 30 * kSecond)));
   }
   const Statistics counts = countsOf(recordings, 2);
-  const Relation relation = Relations(counts, kNoGraph, kTuning).delays(kA, kB);
+  const Relation relation = delays(counts);
   EXPECT_EQ(relation.starts, 1U);
   EXPECT_FALSE(relation.watched);
 }
@@ -200,7 +186,7 @@ TEST(Relations, AStartWithFewEventsSaysNothing) {
     }
   }
   const Statistics counts = countsOf({full, later(few), later(full, 2 * kStart)}, 2);
-  EXPECT_EQ(Relations(counts, kNoGraph, kTuning).delays(kA, kB).starts, 2U);
+  EXPECT_EQ(delays(counts).starts, 2U);
 }
 
 TEST(Relations, APhaseAroundZeroIsAsNarrowAsAnyOther) {
@@ -213,7 +199,7 @@ TEST(Relations, APhaseAroundZeroIsAsNarrowAsAnyOther) {
   const Statistics counts = countsOf({together({timer(kA, 0, kLength, kPeriod), answered})}, 2);
   ASSERT_GT(counts.delays(kA, kB)[log_bins::bin(kMillisecond)], 200U);
   ASSERT_GT(counts.delays(kA, kB)[log_bins::bin(99 * kMillisecond)], 200U);
-  EXPECT_LT(Relations(counts, kNoGraph, kTuning).delays(kA, kB).spread, 0.1);
+  EXPECT_LT(delays(counts).spread, 0.1);
 }
 
 TEST(Relations, HiccupsDoNotWidenAPhase) {
@@ -222,7 +208,7 @@ TEST(Relations, HiccupsDoNotWidenAPhase) {
     answered[k].stamp += 50 * kMillisecond;
   }
   const Statistics counts = countsOf({together({timer(kA, 0, kLength, kPeriod), answered})}, 2);
-  EXPECT_LT(Relations(counts, kNoGraph, kTuning).delays(kA, kB).spread, 0.1);
+  EXPECT_LT(delays(counts).spread, 0.1);
 }
 
 TEST(Relations, WhoComesLateInAPeriodMayBeTheOneThatAsks) {
@@ -230,26 +216,25 @@ TEST(Relations, WhoComesLateInAPeriodMayBeTheOneThatAsks) {
   const std::vector<std::int64_t> late(8, 80 * kMillisecond);
   const Statistics soon = timers(early);
   const Statistics afterwards = timers(late);
-  EXPECT_TRUE(Relations(soon, kNoGraph, kTuning).delays(kA, kB).watched);
-  EXPECT_FALSE(Relations(soon, kNoGraph, kTuning).delays(kB, kA).watched);
-  const Relation relation = Relations(afterwards, kNoGraph, kTuning).delays(kA, kB);
+  EXPECT_TRUE(delays(soon).watched);
+  EXPECT_FALSE(delays(soon, kNoGraph, kB, kA).watched);
+  const Relation relation = delays(afterwards);
   EXPECT_FALSE(relation.watched);
   EXPECT_EQ(relation.starts_needed, 0U) << "no number of starts helps";
   const SourceGraph graph = connected("/x");
-  EXPECT_TRUE(Relations(afterwards, graph, kTuning).delays(kA, kB).watched);
+  EXPECT_TRUE(delays(afterwards, graph).watched);
 }
 
 TEST(Relations, AMessageThatGetsThereIsAReason) {
   const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond});
-  ASSERT_FALSE(Relations(counts, kNoGraph, kTuning).delays(kA, kB).watched);
+  ASSERT_FALSE(delays(counts).watched);
   const SourceGraph graph = connected("/x");
-  const Relation there = Relations(counts, graph, kTuning).delays(kA, kB);
+  const Relation there = delays(counts, graph);
   EXPECT_TRUE(there.reaches && there.watched);
-  const Relation back = Relations(counts, graph, kTuning).delays(kB, kA);
+  const Relation back = delays(counts, graph, kB, kA);
   EXPECT_FALSE(back.reaches || back.watched) << "B's messages do not get to A";
   const SourceGraph other = connected("/other");
-  EXPECT_FALSE(Relations(counts, other, kTuning).delays(kA, kB).reaches)
-      << "it hears another topic";
+  EXPECT_FALSE(delays(counts, other).reaches) << "it hears another topic";
 }
 
 TEST(Relations, WhoAnswersToEveryFourthMessageHasItsOwnPeriod) {
@@ -266,62 +251,60 @@ TEST(Relations, WhoAnswersToEveryFourthMessageHasItsOwnPeriod) {
   }
   const Statistics counts = countsOf(starts, 2);
   const SourceGraph graph = connected("/x");
-  const Relation reached = Relations(counts, graph, kTuning).delays(kA, kB);
+  const Relation reached = delays(counts, graph);
   EXPECT_LT(reached.spread, 0.25);
   EXPECT_TRUE(reached.watched);
-  const Relation alone = Relations(counts, kNoGraph, kTuning).delays(kA, kB);
+  const Relation alone = delays(counts);
   EXPECT_GT(alone.spread, 0.6) << "it may be any message's answer";
   EXPECT_FALSE(alone.watched);
   // Of two topics of one node, nobody knows what comes upon what.
   const Statistics own = countsOf(starts, {{"/a", "/x", "T"}, {"/a", "/y", "T"}});
-  EXPECT_GT(Relations(own, graph, kTuning).delays(kA, kB).spread, 0.6);
+  EXPECT_GT(delays(own, graph).spread, 0.6);
 }
 
 TEST(Relations, WhatOneNodePublishesIsAReason) {
   const Statistics counts = countsOf(
       {together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)})},
       {{"/a", "/x", "T"}, {"/a", "/y", "T"}});
-  EXPECT_TRUE(Relations(counts, kNoGraph, kTuning).delays(kA, kB).reaches);
+  EXPECT_TRUE(delays(counts).reaches);
   const Statistics unknown = countsOf({}, {{"", "/x", "T"}, {"", "/y", "T"}});
-  EXPECT_FALSE(Relations(unknown, kNoGraph, kTuning).delays(kA, kB).reaches)
-      << "who sends is not known";
+  EXPECT_FALSE(delays(unknown).reaches) << "who sends is not known";
 }
 
 TEST(Relations, WhatEverybodyHearsIsNoReason) {
   const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond});
   const SourceGraph few = connected("/x", 3);
-  EXPECT_TRUE(Relations(counts, few, kTuning).delays(kA, kB).reaches);
+  EXPECT_TRUE(delays(counts, few).reaches);
   SourceGraph many = connected("/x", 6);
-  EXPECT_FALSE(Relations(counts, many, kTuning).delays(kA, kB).reaches);
+  EXPECT_FALSE(delays(counts, many).reaches);
   for (int k = 0; k < 10; ++k) {  // now it is a small part of all
     many.connect("/c", "/z", "/more" + std::to_string(k));
   }
-  EXPECT_TRUE(Relations(counts, many, kTuning).delays(kA, kB).reaches);
+  EXPECT_TRUE(delays(counts, many).reaches);
   for (const std::string topic : {"/tf", "/tf_static", "/clock"}) {
     const Statistics common = followed(1, {{"/a", topic, "T"}, kTypes[kB]});
     const SourceGraph graph = connected(topic);
-    EXPECT_FALSE(Relations(common, graph, kTuning).delays(kA, kB).reaches) << topic;
+    EXPECT_FALSE(delays(common, graph).reaches) << topic;
   }
 }
 
 TEST(Relations, AnIrregularTriggerIsAReason) {
   const Statistics one = followed(1);
-  const Relation relation = Relations(one, kNoGraph, kTuning).delays(kA, kB);
+  const Relation relation = delays(one);
   EXPECT_TRUE(relation.irregular);
   EXPECT_FALSE(relation.watched) << "one start is not enough yet";
   EXPECT_EQ(relation.starts_needed, 2U);
   const Statistics two = followed(2);
-  EXPECT_TRUE(Relations(two, kNoGraph, kTuning).delays(kA, kB).watched);
+  EXPECT_TRUE(delays(two).watched);
   const SourceGraph graph = connected("/x");
-  EXPECT_TRUE(Relations(one, graph, kTuning).delays(kA, kB).watched)
-      << "both reasons at once are enough";
+  EXPECT_TRUE(delays(one, graph).watched) << "both reasons at once are enough";
 }
 
 TEST(Relations, UnrelatedEventsAreNotIrregularForEachOther) {
   const Statistics counts = countsOf(
       {together({irregular(kA, 0, kLength, kPeriod, 1), irregular(kB, 0, kLength, kPeriod, 2)})},
       2);
-  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).delays(kA, kB).irregular);
+  EXPECT_FALSE(delays(counts).irregular);
 }
 
 TEST(Relations, MissesByChanceAreTheGapsThatFitIntoThoseOfTheOther) {
@@ -356,7 +339,7 @@ TEST(Relations, ADeadlineNeedsAnAnswerThatTakesItsTime) {
   const Events asked = requests(1);
   const Statistics counts =
       countsOf({together({asked, answers(kB, asked, 100 * kMillisecond)})}, 2);
-  EXPECT_TRUE(Relations(counts, kNoGraph, kTuning).owed(kA, kB).watched);
+  EXPECT_TRUE(isOwed(counts));
   // Two that answer to the same come now in this order, now in that.
   Events first;
   Events second;
@@ -366,21 +349,21 @@ TEST(Relations, ADeadlineNeedsAnAnswerThatTakesItsTime) {
     second.push_back({event.stamp + (a_is_first ? 3 : 450) * kMillisecond, kB});
   }
   const Statistics both = countsOf({together({first, second})}, 2);
-  EXPECT_FALSE(Relations(both, kNoGraph, kTuning).owed(kA, kB).watched);
+  EXPECT_FALSE(isOwed(both));
 }
 
 TEST(Relations, WhatComesAsOftenAsByChanceIsNotOwed) {
   const Statistics counts = countsOf({together({irregular(kA, 0, 400 * kSecond, 4 * kSecond, 1),
                                                 irregular(kB, 0, 400 * kSecond, 4 * kSecond, 2)})},
                                      2);
-  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).owed(kA, kB).watched);
+  EXPECT_FALSE(isOwed(counts));
 }
 
 TEST(Relations, ATimersOwnPeriodSaysAsMuchAsWhatItAnswersTo) {
   const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond, 20 * kMillisecond});
-  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).owed(kA, kB).watched);
+  EXPECT_FALSE(isOwed(counts));
   const SourceGraph graph = connected("/x");
-  EXPECT_FALSE(Relations(counts, graph, kTuning).owed(kA, kB).watched);
+  EXPECT_FALSE(isOwed(counts, graph));
 }
 
 // A tracker at 10 Hz that pauses with what it answers to, and leaves out one in a hundred.
@@ -416,8 +399,8 @@ TEST(Relations, WithAGraphADeadlineNeedsAMessageThatGetsThere) {
       countsOf({together({asked, answers(kB, asked, 100 * kMillisecond)})}, 2);
   const SourceGraph reached = connected("/x");
   const SourceGraph other = connected("/other");
-  EXPECT_TRUE(Relations(counts, reached, kTuning).owed(kA, kB).watched);
-  EXPECT_FALSE(Relations(counts, other, kTuning).owed(kA, kB).watched);
+  EXPECT_TRUE(isOwed(counts, reached));
+  EXPECT_FALSE(isOwed(counts, other));
 }
 
 }  // namespace

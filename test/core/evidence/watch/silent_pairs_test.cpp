@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <random>
-#include <string>
 #include <vector>
 
-#include "../recordings.h"
+#include "../tracks.h"
 #include "core/evidence/watch/gain.h"
 #include "self_awareness/core/model.h"
 
@@ -14,14 +13,6 @@ namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kLength = 60 * kSecond;
-
-std::vector<EventType> types(std::size_t number) {
-  std::vector<EventType> types;
-  for (std::size_t k = 0; k < number; ++k) {
-    types.push_back({"/" + std::to_string(k), "/topic", "T"});
-  }
-  return types;
-}
 
 // Timers that have nothing to do with each other, each with an answer, and one that is asked
 // seldom.
@@ -35,7 +26,7 @@ Statistics robot(EventId timers, unsigned seed) {
   }
   const Events goals = irregular(2 * timers, 0, kLength, 1500 * kMillisecond, seed);
   events = together({events, goals, answers(2 * timers + 1, goals, 400 * kMillisecond)});
-  return countsOf({later(events, seed * kStart)}, types(2 * timers + 2));
+  return countsOf({later(events, seed * kStart)}, numberedTypes(2 * timers + 2));
 }
 
 Halves robotHalves(EventId timers) {
@@ -52,13 +43,8 @@ std::size_t numberOf(const PairSet& pairs) {
   return number;
 }
 
-void expectSameTracks(const Watched& a, const Watched& b) {
-  ASSERT_EQ(a.tracks.size(), b.tracks.size());
-  for (std::size_t k = 0; k < a.tracks.size(); ++k) {
-    EXPECT_EQ(a.tracks[k].channel, b.tracks[k].channel);
-    EXPECT_EQ(a.tracks[k].to, b.tracks[k].to);
-    EXPECT_EQ(a.tracks[k].from, b.tracks[k].from);
-  }
+void expectSame(const Watched& a, const Watched& b) {
+  expectSameTracks(a.tracks, b.tracks);
   EXPECT_TRUE(a.halves == b.halves);
 }
 
@@ -70,7 +56,7 @@ TEST(SilentPairs, AreMostAndWhatIsWatchedStaysTheSame) {
   const Watched watched = watch(counts[0], counts[1]);
   EXPECT_TRUE(isWatched(watched.tracks, kPairs, 1, 0));
   EXPECT_TRUE(isWatched(watched.tracks, kDeadlines, 17, 16));
-  expectSameTracks(watch(rest[0], rest[1]), watched);
+  expectSame(watch(rest[0], rest[1]), watched);
   EXPECT_EQ(rest[0].delaysToAny(), counts[0].delaysToAny());
   EXPECT_EQ(rest[0].total(3, 0), 0U);
   EXPECT_GT(counts[0].total(3, 0), 0U);
@@ -120,7 +106,7 @@ TEST(SilentPairs, AreLeftOutOfModelsOfManyEventTypesOnly) {
     model.watch();
     EXPECT_EQ(model.evidence[0].leftOut().empty(), timers == 4);
     EXPECT_TRUE(model.evidence[0].leftOut() == model.evidence[1].leftOut());
-    expectSameTracks(model.watched, watched);
+    expectSame(model.watched, watched);
   }
 }
 

@@ -4,14 +4,10 @@
 
 #include <cstdint>
 
-#include "self_awareness/core/evidence/count/statistics.h"
+#include "../recordings.h"
 
 namespace self_awareness::core::evidence {
 namespace {
-
-constexpr std::int64_t kMillisecond = 1000000;
-constexpr std::int64_t kSecond = 1000 * kMillisecond;
-constexpr std::int64_t kStart = 100 * kSecond;
 
 // The longest silence of training was 40 ms, and so 50 ms are no stall.
 class StallsTest : public testing::Test {

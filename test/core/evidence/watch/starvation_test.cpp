@@ -4,14 +4,10 @@
 
 #include <cstdint>
 
-#include "self_awareness/core/evidence/count/statistics.h"
-#include "self_awareness/core/stream/event.h"
+#include "../recordings.h"
 
 namespace self_awareness::core::evidence {
 namespace {
-
-constexpr std::int64_t kMillisecond = 1000000;
-constexpr std::int64_t kSecond = 1000 * kMillisecond;
 
 // A machine that usually keeps its processes waiting for 4 % of the time.
 class StarvationTest : public testing::Test {

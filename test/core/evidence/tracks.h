@@ -1,0 +1,59 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "recordings.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/limits/limits.h"
+
+/// Numbers of the tracks of a model: limits, and shares of them.
+namespace self_awareness::core::evidence {
+
+inline void expectSameTracks(const std::vector<Track>& a, const std::vector<Track>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    EXPECT_EQ(a[k].channel, b[k].channel);
+    EXPECT_EQ(a[k].to, b[k].to);
+    EXPECT_EQ(a[k].from, b[k].from);
+  }
+}
+
+/// No limit: the track is not judged.
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// One number for all tracks.
+inline std::vector<double> allTracks(const Model& model, double number) {
+  return std::vector<double>(model.tracks().size(), number);
+}
+
+inline Limits allLimits(const Model& model, double limit) {
+  return {allTracks(model, limit), {}};
+}
+
+inline void expectSameLimits(const Limits& a, const Limits& b) {
+  ASSERT_EQ(a.tracks.size(), b.tracks.size());
+  for (std::size_t track = 0; track < a.tracks.size(); ++track) {
+    EXPECT_TRUE(a.tracks[track] == b.tracks[track] ||
+                (std::isnan(a.tracks[track]) && std::isnan(b.tracks[track])))
+        << track;
+  }
+}
+
+/// The number of one track.
+inline double& ofTrack(std::vector<double>& numbers, const Model& model,
+                       const std::string& channel, EventId to, EventId from) {
+  return numbers.at(indexOf(model.tracks(), channel, to, from));
+}
+
+inline double& ofTrack(std::vector<double>& numbers, const Model& model,
+                       const std::string& channel, EventId id) {
+  return ofTrack(numbers, model, channel, id, id);
+}
+
+}  // namespace self_awareness::core::evidence
