@@ -2,25 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/filesystem.hpp>
-#include <fstream>
-#include <functional>
-#include <iterator>
 #include <string>
 
+#include "one_message_case.h"
 #include "ros/verdict/standing_alarm.h"
 #include "self_awareness/SelfAwareness.h"
-#include "self_awareness/ros/bag/bag_reader.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-namespace fs = boost::filesystem;
-
-class IncidentsFileTest : public testing::Test {
+class IncidentsFileTest : public OneMessageTest<self_awareness::Incidents> {
  protected:
-  IncidentsFileTest() {
-    fs::create_directory(folder_);
+  IncidentsFileTest()
+      : OneMessageTest(writeIncidents, readIncidents, "the incidents in it are damaged") {
     core::Incident incident;
     incident.id = incident.main = 1600000000000000000;
     incident.last = 1600000001000000000;
@@ -38,40 +32,10 @@ class IncidentsFileTest : public testing::Test {
     incident.over = incident.unknown = true;
     incident.alarms = 7;
     incident.near_misses = 3;
-    incidents_.incidents = {toMessage(incident)};
-    incidents_.incidents[0].recording = "/files/alarm.bag";
-    incidents_.incidents[0].model = "/files/robot.model";
+    content_.incidents = {toMessage(incident)};
+    content_.incidents[0].recording = "/files/alarm.bag";
+    content_.incidents[0].model = "/files/robot.model";
   }
-  ~IncidentsFileTest() override { fs::remove_all(folder_); }
-  IncidentsFileTest(const IncidentsFileTest&) = delete;
-  IncidentsFileTest& operator=(const IncidentsFileTest&) = delete;
-
-  std::string written() {
-    writeIncidents(incidents_, path_);
-    std::ifstream file(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  /// Why a file with these bytes is refused; empty: it is not.
-  std::string errorOf(const std::string& bytes) {
-    std::ofstream(path_, std::ios::binary) << bytes;
-    try {
-      readIncidents(path_);
-      return "";
-    } catch (const BagError& error) {
-      return error.what();
-    }
-  }
-  void expectRefused(const std::string& why,
-                     const std::function<void(self_awareness::Incidents&)>& change) {
-    const self_awareness::Incidents before = incidents_;
-    change(incidents_);
-    EXPECT_EQ(errorOf(written()), path_ + ": the incidents in it are damaged (" + why + ")");
-    incidents_ = before;
-  }
-
-  const fs::path folder_ = fs::temp_directory_path() / fs::unique_path();
-  const std::string path_ = (folder_ / "monitor.incidents").string();
-  self_awareness::Incidents incidents_;
 };
 
 TEST_F(IncidentsFileTest, IsReadAsItWasWritten) {
@@ -79,27 +43,14 @@ TEST_F(IncidentsFileTest, IsReadAsItWasWritten) {
   written();
   const auto read = readIncidents(path_);
   ASSERT_TRUE(read);
-  EXPECT_EQ(*read, incidents_);
+  EXPECT_EQ(*read, content_);
 }
 
 TEST_F(IncidentsFileTest, TheCoreHasOfItWhatTheMessageSays) {
-  self_awareness::Incident message = incidents_.incidents[0];
+  self_awareness::Incident message = content_.incidents[0];
   message.recording.clear();
   message.model.clear();
   EXPECT_EQ(toMessage(fromMessage(message)), message);
-}
-
-TEST_F(IncidentsFileTest, ADamagedFileIsRefusedByName) {
-  const std::string good = written();
-  ASSERT_EQ(errorOf(good), "");
-  for (std::size_t size = 0; size < good.size(); size += 41) {
-    EXPECT_EQ(errorOf(good.substr(0, size)).rfind(path_ + ": ", 0), 0U) << size;
-  }
-  for (std::size_t place = 0; place < good.size(); place += 13) {
-    std::string bad = good;
-    bad[place] = static_cast<char>(bad[place] ^ 0xff);
-    errorOf(bad);  // whatever it is, it is said or read
-  }
 }
 
 TEST_F(IncidentsFileTest, WhatCannotBeIsRefused) {
@@ -115,7 +66,7 @@ TEST_F(IncidentsFileTest, WhatCannotBeIsRefused) {
   });
   expectRefused("the name of a component is too long",
                 [](Incidents& of) { of.incidents[0].others = {std::string(1001, 'a')}; });
-  incidents_.incidents[0].component = "/\x1b[2J";
+  content_.incidents[0].component = "/\x1b[2J";
   EXPECT_NE(errorOf(written()), "") << "its texts are printable";
 }
 

@@ -2,27 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/filesystem.hpp>
-#include <fstream>
-#include <functional>
-#include <iterator>
 #include <string>
 
-#include "self_awareness/ros/bag/bag_reader.h"
+#include "one_message_case.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-namespace fs = boost::filesystem;
 using self_awareness::SelfAwareness;
 
-class StandingAlarmTest : public testing::Test {
+class StandingAlarmTest : public OneMessageTest<self_awareness::StandingAlarm> {
  protected:
-  StandingAlarmTest() {
-    fs::create_directory(folder_);
-    standing_.run_id = "run";
-    standing_.recording = "/files/alarm.bag";
-    SelfAwareness& alarm = standing_.alarm;
+  StandingAlarmTest()
+      : OneMessageTest(writeStandingAlarm, readStandingAlarm, "the alarm in it is damaged") {
+    content_.run_id = "run";
+    content_.recording = "/files/alarm.bag";
+    SelfAwareness& alarm = content_.alarm;
     alarm.level = SelfAwareness::ERROR;
     alarm.alarm = 1600000000000000000;
     alarm.kind = "died";
@@ -36,35 +31,9 @@ class StandingAlarmTest : public testing::Test {
     suspect.since.sec = 7;
     alarm.suspects = {suspect};
   }
-  ~StandingAlarmTest() override { fs::remove_all(folder_); }
-  StandingAlarmTest(const StandingAlarmTest&) = delete;
-  StandingAlarmTest& operator=(const StandingAlarmTest&) = delete;
-
-  std::string written() {
-    writeStandingAlarm(standing_, path_);
-    std::ifstream file(path_, std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-  /// Why a file with these bytes is refused; empty: it is not.
-  std::string errorOf(const std::string& bytes) {
-    std::ofstream(path_, std::ios::binary) << bytes;
-    try {
-      readStandingAlarm(path_);
-      return "";
-    } catch (const BagError& error) {
-      return error.what();
-    }
-  }
   void expectRefused(const std::string& why, const std::function<void(SelfAwareness&)>& change) {
-    const self_awareness::StandingAlarm before = standing_;
-    change(standing_.alarm);
-    EXPECT_EQ(errorOf(written()), path_ + ": the alarm in it is damaged (" + why + ")");
-    standing_ = before;
+    OneMessageTest::expectRefused(why, [&](auto& standing) { change(standing.alarm); });
   }
-
-  const fs::path folder_ = fs::temp_directory_path() / fs::unique_path();
-  const std::string path_ = (folder_ / "standing_alarm.bag").string();
-  self_awareness::StandingAlarm standing_;
 };
 
 TEST_F(StandingAlarmTest, IsReadAsItWasWritten) {
@@ -72,8 +41,8 @@ TEST_F(StandingAlarmTest, IsReadAsItWasWritten) {
   written();
   const auto read = readStandingAlarm(path_);
   ASSERT_TRUE(read);
-  EXPECT_EQ(*read, standing_);
-  standing_.alarm.level = SelfAwareness::OK;
+  EXPECT_EQ(*read, content_);
+  content_.alarm.level = SelfAwareness::OK;
   written();
   EXPECT_FALSE(readStandingAlarm(path_)) << "the alarm is over";
 }
@@ -82,7 +51,7 @@ TEST_F(StandingAlarmTest, ADamagedFileIsRefusedByName) {
   const std::string good = written();
   ASSERT_EQ(errorOf(good), "");
   for (std::size_t size = 0; size < good.size(); size += 37) {
-    EXPECT_EQ(errorOf(good.substr(0, size)).rfind(path_ + ": ", 0), 0U) << size;
+    EXPECT_TRUE(begins(errorOf(good.substr(0, size)), path_ + ": ")) << size;
   }
   for (std::size_t place = 0; place < good.size(); place += 11) {
     std::string bad = good;
@@ -103,16 +72,16 @@ TEST_F(StandingAlarmTest, WhatCannotBeIsRefused) {
   expectRefused("it has too many suspects", [](SelfAwareness& alarm) {
     alarm.suspects.resize(core::kMostSuspects + 1, alarm.suspects[0]);
   });
-  standing_.alarm.component = "/\x1b[2J";
+  content_.alarm.component = "/\x1b[2J";
   EXPECT_NE(errorOf(written()), "") << "its texts are printable";
 }
 
 TEST_F(StandingAlarmTest, SuspectsAreThoseThatTheModelKnows) {
   core::Vocabulary vocabulary({{"/other", "/odom", "T"}, {"/driver", "/scan", "T"}});
-  self_awareness::Suspect unknown = standing_.alarm.suspects[0];
+  self_awareness::Suspect unknown = content_.alarm.suspects[0];
   unknown.scope = "/elsewhere";
-  standing_.alarm.suspects.push_back(unknown);
-  const auto suspects = fromMessages(standing_.alarm.suspects, vocabulary);
+  content_.alarm.suspects.push_back(unknown);
+  const auto suspects = fromMessages(content_.alarm.suspects, vocabulary);
   ASSERT_EQ(suspects.size(), 1U);
   EXPECT_EQ(suspects[0].id, 1U);
   EXPECT_EQ(suspects[0].component, "/driver");
