@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import math
 import pickle
-import random
 from pathlib import Path
 from typing import Dict, List, Sequence, Tuple
 
@@ -16,8 +15,8 @@ from reference import Reference
 from reference_evidence import BINS, Counts, is_mode, lower_edge, stalls_of
 
 from self_awareness import (Calibrator, DetectorParameters, EncodingRules, EventType,
-                            EvidenceCounts, EvidenceModel, PaperModel, Recording, TrainedModel,
-                            Training, Verdicts)
+                            EvidenceCounts, EvidenceModel, PaperModel, TrainedModel, Training,
+                            Verdicts)
 
 WINDOW = 100 * MS
 BIN = 10 * MS
@@ -42,18 +41,11 @@ def arrays(events: Sequence[Event]) -> Tuple[np.ndarray, np.ndarray]:
             np.array([KINDS.index(kind) for _, kind in events]))
 
 
-def trained_on(all_events: Sequence[Sequence[Event]],
-               fingerprints: Sequence[int] = ()) -> TrainedModel:
-    """Train both detectors on recordings; those with a fingerprint belong to a half by it."""
+def trained_on(all_events: Sequence[Sequence[Event]]) -> TrainedModel:
+    """Train both detectors on recordings."""
     training = Training(EncodingRules(), BIN, WINDOW, paper=True)
-    for number, events in enumerate(all_events):
-        recording = None
-        if fingerprints:
-            recording = Recording()
-            recording.fingerprint = fingerprints[number]
-            stamps = sorted(stamp for stamp, _ in events)
-            recording.start, recording.end = stamps[0], stamps[-1]
-        training.add_events(TYPES, *arrays(events), recording)
+    for events in all_events:
+        training.add_events(TYPES, *arrays(events))
     return training.model()
 
 
@@ -192,53 +184,3 @@ def test_limits_are_numbers(all_events: List[List[Event]], normal: List[List[Eve
     assert 0 <= found.windows <= sum(
         (piece[-1][0] - piece[0][0]) // WINDOW + 2 for events in normal
         for piece in pieces(events))
-
-
-@examples
-@given(SEVERAL, SEVERAL)
-def test_models_add_up_to_that_of_one_training(first: List[List[Event]],
-                                               second: List[List[Event]]) -> None:
-    together = trained_on([*first, *second])
-    merged = trained_on(first)
-    merged.merge(trained_on(second))
-    merged.watch()
-    ids, other_ids = ids_of(together), ids_of(merged)
-    assert set(ids) == set(other_ids)
-    for i in ids:
-        assert merged.event_count(other_ids[i]) == together.event_count(ids[i])
-        for j in ids:
-            pair, other_pair = (ids[i], ids[j]), (other_ids[i], other_ids[j])
-            assert merged.histogram(*other_pair) == together.histogram(*pair)
-            assert merged.delays(*other_pair) == together.delays(*pair)
-
-
-@examples
-@given(st.lists(st.tuples(long_recordings(), st.integers(0, 2 ** 64 - 1)), min_size=2,
-                max_size=4), st.randoms())
-def test_the_order_of_recordings_changes_nothing(
-        of_robot: List[Tuple[List[Event], int]], chance: random.Random) -> None:
-    shuffled = chance.sample(of_robot, len(of_robot))
-    one, other = (trained_on([events for events, _ in each], [number for _, number in each])
-                  for each in (of_robot, shuffled))
-    assert counted(one) == counted(other)
-    watched, other_watched = (
-        {(track.channel, trained.event_types[track.to_id].scope[1:],
-          trained.event_types[track.from_id].scope[1:])
-         for track in EvidenceModel(trained).tracks} for trained in (one, other))
-    assert watched == other_watched
-
-
-def counted(trained: TrainedModel) -> Dict[object, object]:
-    """Return what each half and the whole counted, whatever the ids."""
-    ids = ids_of(trained)
-    found: Dict[object, object] = {}
-    for half in (0, 1, None):
-        counts = EvidenceCounts(trained, half)
-        found[half] = counts.duration
-        for i in ids:
-            found[half, i] = (counts.events(ids[i]), counts.rate_variance(ids[i]))
-            for j in ids:
-                found[half, i, j] = (counts.delays(ids[i], ids[j]),
-                                     counts.usual_delay(ids[i], ids[j], 0.9))
-                found[i, j] = trained.histogram(ids[i], ids[j])
-    return found
