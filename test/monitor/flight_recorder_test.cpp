@@ -4,7 +4,6 @@
 #include <sys/types.h>
 #include <sys/wait.h>
 
-#include <boost/filesystem.hpp>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -15,28 +14,27 @@
 #include <vector>
 
 #include "../await.h"
+#include "../in_folder.h"
+#include "../problem.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 
 namespace self_awareness {
 namespace {
 
-namespace filesystem = boost::filesystem;
-
 constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 constexpr std::int64_t kStart = 1600000000 * kSecond;  // ROS time [ns]
 constexpr std::int64_t kSteady = 5000 * kSecond;       // steady time at the start [ns]
 
-class FlightRecorderTest : public testing::Test {
+class FlightRecorderTest : public InFolder {
  protected:
   FlightRecorderTest() {
-    parameters_.directory = folder_.string();
+    parameters_.directory = recorded_.string();
     vocabulary_.intern({"/player", "/scan", "T"});
     vocabulary_.intern({"/slam", "/pose", "T"});
     auto graph = std::make_shared<ros1::Graph>();
     graph->topics["/scan"].publishers = {"/player"};
     source_ = {ros1::EncodingRules::defaults(), graph};
   }
-  ~FlightRecorderTest() override { filesystem::remove_all(folder_); }
 
   FlightRecorder& recorder() {
     if (!recorder_) {
@@ -75,9 +73,19 @@ class FlightRecorderTest : public testing::Test {
   bool awaitFiles(std::uint64_t number) {
     return await([&] { return recorder().report().files.written == number; });
   }
-  std::size_t files() const {
-    return static_cast<std::size_t>(
-        std::distance(filesystem::directory_iterator(folder_), filesystem::directory_iterator()));
+  std::set<std::string> files() const {
+    return exists(recorded_) ? names("recorder") : std::set<std::string>();
+  }
+  /// The monitor ends.
+  void end() {
+    recorder().finish();
+    recorder_.reset();
+  }
+  /// Writes what it has. @return its events
+  std::vector<core::Event> dumped() {
+    const std::string path = recorder().dump().value();
+    EXPECT_TRUE(awaitFiles(1));
+    return read(path);
   }
   /// The events of a file, by the ids of the vocabulary.
   std::vector<core::Event> read(const std::string& path) {
@@ -96,7 +104,7 @@ class FlightRecorderTest : public testing::Test {
     }
   }
 
-  const filesystem::path folder_ = filesystem::temp_directory_path() / filesystem::unique_path();
+  const boost::filesystem::path recorded_ = folder_ / "recorder";
   RecorderParameters parameters_;
   ros1::LogSource source_;
   core::Vocabulary vocabulary_;
@@ -109,7 +117,7 @@ TEST_F(FlightRecorderTest, AnAlarmIsWrittenWithWhatFollows) {
   hear(0, 20);
   tick(kStart + 20 * kSecond);
   const std::string path = raise();
-  EXPECT_EQ(path.rfind((folder_ / "alarm_").string(), 0), 0U) << path;
+  EXPECT_TRUE(begins(path, (recorded_ / "alarm_").string()));
   hear(20, 24.99);
   EXPECT_EQ(recorder().report().files.written + recorder().report().files.waiting_bytes, 0U);
   hear(24.99, 26);
@@ -120,7 +128,7 @@ TEST_F(FlightRecorderTest, AnAlarmIsWrittenWithWhatFollows) {
   EXPECT_EQ(reader.summary().encoding, source_.encoding);
   EXPECT_TRUE(reader.summary().has_sources);
   EXPECT_EQ(reader.summary().graph.topics.count("/scan"), 1U);
-  EXPECT_EQ(files(), 1U) << "no temporary file is left";
+  EXPECT_EQ(files().size(), 1U) << "no temporary file is left";
 }
 
 TEST_F(FlightRecorderTest, AnAlarmThatFollowsSoonIsInTheSameFile) {
@@ -140,9 +148,7 @@ TEST_F(FlightRecorderTest, TheOldestEventsAreForgotten) {
   EXPECT_LE(recorder().report().seconds,
             30 + 2 * core::toSeconds(ros1::EventLogPacker::kLongestPart))
       << "whole parts are forgotten";
-  const std::string path = recorder().dump().value();
-  ASSERT_TRUE(awaitFiles(1));
-  const std::vector<core::Event> events = read(path);
+  const std::vector<core::Event> events = dumped();
   ASSERT_GE(events.size(), 3000U);
   expectSame(events, heard_.size() - events.size(), heard_.size());
 }
@@ -156,9 +162,7 @@ TEST_F(FlightRecorderTest, ManyEventsDoNotFillTheMemory) {
   EXPECT_GE(recorder().report().bytes, 800000U);
   const double seconds = recorder().report().seconds;
   EXPECT_LT(seconds, 99);
-  const std::string path = recorder().dump().value();
-  ASSERT_TRUE(awaitFiles(1));
-  const std::vector<core::Event> events = read(path);
+  const std::vector<core::Event> events = dumped();
   EXPECT_NEAR(static_cast<double>(events.size()), 20000 * seconds, 40000);
   EXPECT_EQ(events.back().stamp, kStart + 1999999 * 50000L);
 }
@@ -166,19 +170,14 @@ TEST_F(FlightRecorderTest, ManyEventsDoNotFillTheMemory) {
 TEST_F(FlightRecorderTest, AnEventTypeThatWasHeardLongAgoKeepsItsName) {
   parameters_.duration = 30;
   for (int i = 0; i < 2000; ++i) {  // /pose first, so that its number is no accident
-    const core::Event event{kStart + i * kSecond / 10,
-                            static_cast<core::EventId>(i == 0       ? 1
-                                                       : i % 7 == 0 ? 1
-                                                                    : 0)};
+    const core::Event event{kStart + i * kSecond / 10, i % 7 == 0 ? 1U : 0U};
     recorder().onEvent(event, vocabulary_);
     heard_.push_back(event);
   }
   const core::EventId late = vocabulary_.intern({"/joy", "/joy", "T"});
   heard_.push_back({kStart + 200 * kSecond, late});
   recorder().onEvent(heard_.back(), vocabulary_);
-  const std::string path = recorder().dump().value();
-  ASSERT_TRUE(awaitFiles(1));
-  const std::vector<core::Event> events = read(path);
+  const std::vector<core::Event> events = dumped();
   ASSERT_LT(events.size(), 1000U) << "less than half";
   expectSame(events, heard_.size() - events.size(), heard_.size());
 }
@@ -210,24 +209,20 @@ TEST_F(FlightRecorderTest, WhatComesAfterARestartIsAnotherRecording) {
 
 TEST_F(FlightRecorderTest, AtTheEndAnAlarmThatStandsIsWritten) {
   hear(0, 1);
-  recorder().finish();
-  recorder_.reset();
-  EXPECT_FALSE(filesystem::exists(folder_)) << "no alarm stood";
+  end();
+  EXPECT_FALSE(exists(recorded_)) << "no alarm stood";
   hear(0, 1);
   stand();
-  recorder().finish();
-  recorder_.reset();
-  ASSERT_EQ(files(), 1U);
-  EXPECT_EQ(filesystem::directory_iterator(folder_)->path().filename().string().rfind("shutdown_"),
-            0U);
+  end();
+  ASSERT_EQ(files().size(), 1U);
+  EXPECT_TRUE(begins(*files().begin(), "shutdown_"));
 }
 
 TEST_F(FlightRecorderTest, AtTheEndAFileDoesNotWaitForWhatFollows) {
   hear(0, 1);
   const std::string path = raise();
-  recorder().finish();
-  recorder_.reset();
-  EXPECT_EQ(files(), 1U) << "the alarm is in its own file already";
+  end();
+  EXPECT_EQ(files().size(), 1U) << "the alarm is in its own file already";
   expectSame(read(path), 0, 100);
 }
 
@@ -238,9 +233,8 @@ TEST_F(FlightRecorderTest, WithoutADurationThereIsNone) {
   EXPECT_EQ(raise(), "");
   EXPECT_FALSE(recorder().dump());
   stand();
-  recorder().finish();
-  recorder_.reset();
-  EXPECT_FALSE(filesystem::exists(folder_));
+  end();
+  EXPECT_FALSE(exists(recorded_));
 }
 
 TEST_F(FlightRecorderTest, ADiskThatDoesNotTakeItIsReportedAndTheRestGoesOn) {
@@ -248,7 +242,7 @@ TEST_F(FlightRecorderTest, ADiskThatDoesNotTakeItIsReportedAndTheRestGoesOn) {
   hear(0, 1);
   recorder().dump();
   ASSERT_TRUE(await([&] { return !recorder().report().files.error.empty(); }));
-  EXPECT_NE(recorder().report().files.error.find("/dev/full/recorder"), std::string::npos);
+  EXPECT_TRUE(has(recorder().report().files.error, "/dev/full/recorder"));
   hear(1, 30);
   EXPECT_GT(recorder().report().seconds, 29);
 }
@@ -268,22 +262,21 @@ TEST_F(FlightRecorderTest, AKillLeavesWholeFilesOnly) {
         await([&] { return recorder().report().files.waiting_bytes == 0; });
       }
     }
-    ASSERT_TRUE(await([&] { return filesystem::exists(folder_) && files() > 0; }));
+    ASSERT_TRUE(await([&] { return !files().empty(); }));
     std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
     ::kill(node, SIGKILL);
     ASSERT_EQ(::waitpid(node, nullptr, 0), node);
-    for (const filesystem::directory_entry& entry : filesystem::directory_iterator(folder_)) {
-      if (entry.path().extension() == ".bag" && entry.path().filename().string()[0] != '.') {
-        EXPECT_EQ(read(entry.path().string()).size(), 2000U);
+    for (const std::string& name : files()) {
+      if ((recorded_ / name).extension() == ".bag" && name[0] != '.') {
+        EXPECT_EQ(read((recorded_ / name).string()).size(), 2000U);
       }
     }
   }
   hear(0, 20);
   recorder().dump();
   ASSERT_TRUE(awaitFiles(1));
-  for (const filesystem::directory_entry& entry : filesystem::directory_iterator(folder_)) {
-    EXPECT_NE(entry.path().filename().string()[0], '.')
-        << entry << " is left of one that was killed";
+  for (const std::string& name : files()) {
+    EXPECT_NE(name[0], '.') << name << " is left of one that was killed";
   }
 }
 

@@ -3,40 +3,32 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <boost/filesystem.hpp>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "../await.h"
+#include "../in_folder.h"
+#include "../problem.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 
 namespace self_awareness {
 namespace {
 
-namespace filesystem = boost::filesystem;
-
 constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 constexpr std::int64_t kStart = 1600000000 * kSecond;
 constexpr std::int64_t kRobotStart = kStart - 60 * kSecond;
 constexpr std::int64_t kStretch = KeptLogs::kLongest / kSecond;  // [s]
 
-class KeptLogsTest : public testing::Test {
+class KeptLogsTest : public InFolder {
  protected:
   KeptLogsTest() {
-    filesystem::create_directories(folder_);
     parameters_.on = true;
     vocabulary_.intern({"/player", "/scan", "T"});
     vocabulary_.intern({"/slam", "/pose", "T"});
     source_.encoding = ros1::EncodingRules::defaults();
   }
-  ~KeptLogsTest() override {
-    logs_.reset();  // it may still write
-    filesystem::remove_all(folder_);
-  }
-
   KeptLogs& logs() {
     if (!logs_) {
       logs_ = std::make_unique<KeptLogs>(
@@ -55,19 +47,29 @@ class KeptLogsTest : public testing::Test {
   bool awaitFiles(std::uint64_t number) {
     return await([&] { return logs().report().files.written == number; });
   }
+  /// The files that are kept, the oldest first.
   std::vector<std::string> files() const {
     std::vector<std::string> found;
-    if (filesystem::exists(kept_)) {
-      for (const auto& entry : filesystem::directory_iterator(kept_)) {
-        found.push_back(entry.path().string());
+    if (boost::filesystem::exists(kept_)) {
+      for (const std::string& name : names("robot.model.kept")) {
+        found.push_back(kept_ + "/" + name);
       }
     }
-    std::sort(found.begin(), found.end());
     return found;
   }
+  std::vector<core::Event> read(const std::string& file) const {
+    std::vector<core::Event> events;
+    ros1::EventLogReader(file, 0).read(
+        source_.encoding, [&](const core::EventType& type) { return *vocabulary_.find(type); }, {},
+        [&](const core::Event& event) { events.push_back(event); });
+    return events;
+  }
+  /// The stamp that a file has of the start of the robot.
+  static std::int64_t robotStart(const std::string& file) {
+    return ros1::EventLogReader(file, 0).summary().robot_start;
+  }
 
-  const filesystem::path folder_ = filesystem::temp_directory_path() / filesystem::unique_path();
-  const std::string model_ = (folder_ / "robot.model").string();
+  const std::string model_ = path("robot.model");
   const std::string kept_ = model_ + ".kept";
   KeptLogsParameters parameters_;
   ros1::LogSource source_;
@@ -81,18 +83,14 @@ TEST_F(KeptLogsTest, AStretchIsKeptWhole) {
   hear(kStretch, kStretch + 1);
   ASSERT_TRUE(awaitFiles(1));
   ASSERT_EQ(files().size(), 1U);
-  const ros1::EventLogReader reader(files().front(), 0);
-  EXPECT_EQ(reader.summary().start, kStart);
-  EXPECT_EQ(reader.summary().robot_start, kRobotStart);
-  std::size_t events = 0;
-  reader.read(
-      source_.encoding, [&](const core::EventType& type) { return *vocabulary_.find(type); }, {},
-      [&](const core::Event& event) {
-        EXPECT_EQ(event.stamp, kStart + static_cast<std::int64_t>(events) * kSecond);
-        EXPECT_EQ(event.id, events & 1);
-        ++events;
-      });
-  EXPECT_EQ(events, static_cast<std::size_t>(kStretch) + 1);
+  EXPECT_EQ(ros1::EventLogReader(files().front(), 0).summary().start, kStart);
+  EXPECT_EQ(robotStart(files().front()), kRobotStart);
+  const std::vector<core::Event> events = read(files().front());
+  ASSERT_EQ(events.size(), static_cast<std::size_t>(kStretch) + 1);
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    EXPECT_EQ(events[k].stamp, kStart + static_cast<std::int64_t>(k) * kSecond);
+    EXPECT_EQ(events[k].id, k & 1);
+  }
 }
 
 TEST_F(KeptLogsTest, EachStretchBeginsWithTheModeThatLasts) {
@@ -101,13 +99,14 @@ TEST_F(KeptLogsTest, EachStretchBeginsWithTheModeThatLasts) {
   logs().onEvent({kStart, mode}, vocabulary_);
   hear(0, 2 * kStretch + 2);
   ASSERT_TRUE(awaitFiles(2));
+  const auto times = [&](const std::string& file) {
+    const std::vector<core::Event> events = read(file);
+    return std::count_if(events.begin(), events.end(),
+                         [&](const core::Event& event) { return event.id == mode; });
+  };
   for (const std::string& file : files()) {
-    std::vector<core::EventId> ids;
-    ros1::EventLogReader(file, 0).read(
-        source_.encoding, [&](const core::EventType& type) { return *vocabulary_.find(type); }, {},
-        [&](const core::Event& event) { ids.push_back(event.id); });
-    EXPECT_EQ(ids.front(), mode) << file;
-    EXPECT_EQ(std::count(ids.begin(), ids.end(), mode), 1) << file;
+    EXPECT_EQ(read(file).front().id, mode) << file;
+    EXPECT_EQ(times(file), 1) << file;
   }
   // Another model has other ids.
   logs().setModel(model_, true);
@@ -115,10 +114,7 @@ TEST_F(KeptLogsTest, EachStretchBeginsWithTheModeThatLasts) {
   hear(2 * kStretch + 10, 2 * kStretch + 30);
   logs().finish();
   EXPECT_EQ(files().size(), 3U);
-  ros1::EventLogReader(files().back(), 0)
-      .read(
-          source_.encoding, [&](const core::EventType& type) { return *vocabulary_.find(type); },
-          {}, [&](const core::Event& event) { EXPECT_NE(event.id, mode); });
+  EXPECT_EQ(times(files().back()), 0);
 }
 
 TEST_F(KeptLogsTest, WhatIsNotNormalIsNotKeptAndTheNextStretchIs) {
@@ -155,13 +151,11 @@ TEST_F(KeptLogsTest, WhatIsLeftOutAtTheEndIsNotKept) {
 
 TEST_F(KeptLogsTest, TheOldestMakeRoom) {
   parameters_.disk = 1;
-  filesystem::create_directories(kept_);
-  const auto fill = [this](const std::string& name) {
-    std::ofstream((kept_ + "/" + name).c_str()) << std::string(600000, 'x');
-  };
-  fill("normal_2020-01-01-00-00-00.000.bag");
-  fill("normal_2020-01-02-00-00-00.000.bag");
-  fill("of_somebody_else.bag");
+  boost::filesystem::create_directory(kept_);
+  for (const char* const name : {"normal_2020-01-01-00-00-00.000.bag",
+                                 "normal_2020-01-02-00-00-00.000.bag", "of_somebody_else.bag"}) {
+    writeFile(kept_ + "/" + name, std::string(600000, 'x'));
+  }
   hear(0, 60);
   logs().finish();
   ASSERT_EQ(files().size(), 3U);
@@ -187,15 +181,15 @@ TEST_F(KeptLogsTest, AnotherStartOfTheRobotIsAnotherRecording) {
   hear(60, 120);
   logs().finish();
   ASSERT_EQ(files().size(), 2U);
-  EXPECT_EQ(ros1::EventLogReader(files()[0], 0).summary().robot_start, kRobotStart);
-  EXPECT_EQ(ros1::EventLogReader(files()[1], 0).summary().robot_start, kStart + 60 * kSecond);
+  EXPECT_EQ(robotStart(files()[0]), kRobotStart);
+  EXPECT_EQ(robotStart(files()[1]), kStart + 60 * kSecond);
 }
 
 TEST_F(KeptLogsTest, AFolderThatCannotBeMadeIsTold) {
-  std::ofstream(kept_.c_str()) << "a file";
+  writeFile(kept_, "a file");
   hear(0, kStretch + 1);
   ASSERT_TRUE(await([&] { return !logs().report().files.error.empty(); }));
-  EXPECT_NE(logs().report().files.error.find(kept_), std::string::npos);
+  EXPECT_TRUE(has(logs().report().files.error, kept_));
 }
 
 }  // namespace

@@ -1,10 +1,12 @@
 #include "monitor/log_quotes.h"
 
 #include <gtest/gtest.h>
-#include <ros/serialization.h>
 #include <rosgraph_msgs/Log.h>
 
 #include <string>
+
+#include "../problem.h"
+#include "../ros/serialized.h"
 
 namespace self_awareness {
 namespace {
@@ -17,10 +19,7 @@ ros1::Content line(std::uint8_t level, const std::string& text) {
   log.level = level;
   log.name = "/laser";
   log.msg = text;
-  ros1::Content content(ros::serialization::serializationLength(log));
-  ros::serialization::OStream stream(content.data(), static_cast<std::uint32_t>(content.size()));
-  ros::serialization::serialize(stream, log);
-  return content;
+  return ros1::serialized(log);
 }
 
 std::string wordsOf(LogQuotes& quotes, core::EventId id) {
@@ -42,7 +41,7 @@ TEST(LogQuotes, ANodeThatLogsAnewIsNamedWithWhatItSaid) {
       "logged ERROR \"lost the laser \uFFFD[31mred\", and nothing of that level in training");
   EXPECT_EQ(wordsOf(quotes, 8), "never seen in training, 1 in this window");
   quotes.add(7, kError, line(8, "again"));
-  EXPECT_NE(wordsOf(quotes, 7).find("\"again\""), std::string::npos) << "the last one";
+  EXPECT_TRUE(has(wordsOf(quotes, 7), "\"again\"")) << "the last one";
   quotes.onCut(Cut::kOtherModel);
   EXPECT_EQ(wordsOf(quotes, 7), "never seen in training, 1 in this window");
 }
@@ -51,8 +50,8 @@ TEST(LogQuotes, LongLinesAreCut) {
   LogQuotes quotes;
   quotes.add(1, kError, line(16, std::string(LogQuotes::kLongest, 'a')));
   quotes.add(2, kError, line(16, std::string(10 * LogQuotes::kLongest, 'b')));
-  EXPECT_NE(wordsOf(quotes, 1).find("aaa\", and"), std::string::npos);
-  EXPECT_NE(wordsOf(quotes, 2).find("bbb...\", and"), std::string::npos);
+  EXPECT_TRUE(has(wordsOf(quotes, 1), "aaa\", and"));
+  EXPECT_TRUE(has(wordsOf(quotes, 2), "bbb...\", and"));
   EXPECT_LT(wordsOf(quotes, 2).size(), LogQuotes::kLongest + 100);
 }
 

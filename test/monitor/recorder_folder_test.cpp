@@ -2,46 +2,47 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/filesystem.hpp>
 #include <cstdlib>
-#include <fstream>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
 
+#include "../in_folder.h"
+#include "../problem.h"
+
 namespace self_awareness {
 namespace {
 
-namespace filesystem = boost::filesystem;
 using Cause = RecorderFolder::Cause;
+using Names = std::set<std::string>;
 
 constexpr std::int64_t kWallTime = 1795324233123456789;  // 2026-11-22 05:10:33.123456789 UTC [ns]
 
-class RecorderFolderTest : public testing::Test {
+class RecorderFolderTest : public InFolder {
  protected:
-  ~RecorderFolderTest() override { filesystem::remove_all(path_); }
-
-  void write(const std::string& name, std::size_t bytes) const {
-    std::ofstream((path_ / name).string()) << std::string(bytes, 'x');
+  /// @param files, bytes that the folder may hold
+  RecorderFolder folder(std::size_t files = 1, std::uint64_t bytes = 1000000) const {
+    return {path("far/recorder"), "/watch", files, bytes};
   }
-  std::set<std::string> names() const {
-    std::set<std::string> names;
-    for (const auto& entry : filesystem::directory_iterator(path_)) {
-      names.insert(entry.path().filename().string());
+  void write(const Names& files, std::size_t bytes = 1) const {
+    for (const std::string& file : files) {
+      writeFile(path("far/recorder/" + file), std::string(bytes, 'x'));
     }
-    return names;
   }
-
-  const filesystem::path path_ =
-      filesystem::temp_directory_path() / filesystem::unique_path() / "recorder";
+  Names files() const { return names("far/recorder"); }
+  /// Of a file; the smaller its number, the older it is.
+  static std::string bag(const std::string& cause, int number) {
+    return cause + "_2026-11-22-05-10-33.00" + std::to_string(number) + ".bag";
+  }
 };
 
 TEST_F(RecorderFolderTest, NamesTellCauseAndTime) {
   const RecorderFolder folder("/data", "/watch", 1, 1);
-  EXPECT_EQ(folder.pathOf(Cause::kAlarm, kWallTime), "/data/alarm_2026-11-22-05-10-33.123.bag");
-  EXPECT_EQ(folder.pathOf(Cause::kDump, kWallTime), "/data/dump_2026-11-22-05-10-33.123.bag");
-  EXPECT_EQ(folder.pathOf(Cause::kShutdown, kWallTime),
-            "/data/shutdown_2026-11-22-05-10-33.123.bag");
+  for (const auto& [cause, name] : std::map<Cause, std::string>{
+           {Cause::kAlarm, "alarm"}, {Cause::kDump, "dump"}, {Cause::kShutdown, "shutdown"}}) {
+    EXPECT_EQ(folder.pathOf(cause, kWallTime), "/data/" + name + "_2026-11-22-05-10-33.123.bag");
+  }
 }
 
 TEST_F(RecorderFolderTest, KnowsTheHomeFolder) {
@@ -67,82 +68,49 @@ TEST_F(RecorderFolderTest, KnowsTheFolderOfRosAndTheNameOfTheMonitor) {
   }
 }
 
-TEST_F(RecorderFolderTest, TheFileOfTheAlarmHasTheNameOfTheMonitor) {
-  EXPECT_EQ(RecorderFolder("/shared", "/robot/watch", 1, 1).pathOfStandingAlarm(),
-            "/shared/robot_watch.alarm");
-}
-
-TEST_F(RecorderFolderTest, ANameIsGivenOnce) {
-  const RecorderFolder folder(path_.string(), "/watch", 1, 1);
-  folder.create();
-  write("alarm_2026-11-22-05-10-33.123.bag", 1);
-  EXPECT_EQ(folder.pathOf(Cause::kAlarm, kWallTime),
-            (path_ / "alarm_2026-11-22-05-10-33.124.bag").string());
-}
-
-TEST_F(RecorderFolderTest, IsCreatedWithAllFoldersAboveIt) {
-  const RecorderFolder folder(path_.string(), "/watch", 1, 1);
-  folder.create();
-  EXPECT_TRUE(filesystem::is_directory(path_));
-  folder.create();
+TEST_F(RecorderFolderTest, ANameIsGivenOnceInAFolderThatIsCreated) {
+  folder().create();
+  folder().create();
+  write({"alarm_2026-11-22-05-10-33.123.bag"});
+  EXPECT_EQ(folder().pathOf(Cause::kAlarm, kWallTime),
+            path("far/recorder/alarm_2026-11-22-05-10-33.124.bag"));
 }
 
 TEST_F(RecorderFolderTest, AFileInItsPlaceIsNamed) {
-  filesystem::create_directories(path_.parent_path());
-  std::ofstream(path_.string()) << "a file";
-  const RecorderFolder folder(path_.string(), "/watch", 1, 1);
-  try {
-    folder.create();
-    FAIL() << "it is no folder";
-  } catch (const std::runtime_error& error) {
-    EXPECT_NE(std::string(error.what()).find(path_.string()), std::string::npos) << error.what();
-  }
+  boost::filesystem::create_directory(path("far"));
+  writeFile(path("far/recorder"), "a file");
+  EXPECT_TRUE(
+      has(problemOf<std::runtime_error>([this] { folder().create(); }), path("far/recorder")));
 }
 
 TEST_F(RecorderFolderTest, TheOldestAreRemovedWhateverTheirCause) {
-  const RecorderFolder folder(path_.string(), "/watch", 3, 1000000);
-  folder.create();
-  write("dump_2026-11-22-05-10-33.001.bag", 1);
-  write("alarm_2026-11-22-05-10-33.002.bag", 1);
-  write("shutdown_2026-11-22-05-10-33.003.bag", 1);
-  write("alarm_2026-11-22-05-10-33.004.bag", 1);
-  write("dump_2026-11-22-05-10-33.005.bag", 1);
-  write("robot.model", 1);
-  write("alarm_precious.bag", 1);
-  folder.removeOldest("");
-  EXPECT_EQ(names(),
-            (std::set<std::string>{
-                "shutdown_2026-11-22-05-10-33.003.bag", "alarm_2026-11-22-05-10-33.004.bag",
-                "dump_2026-11-22-05-10-33.005.bag", "robot.model", "alarm_precious.bag"}));
+  folder().create();
+  write({bag("dump", 1), bag("alarm", 2), bag("shutdown", 3), bag("alarm", 4), bag("dump", 5),
+         "robot.model", "alarm_precious.bag"});
+  folder(3).removeOldest("");
+  EXPECT_EQ(files(), (Names{bag("shutdown", 3), bag("alarm", 4), bag("dump", 5), "robot.model",
+                            "alarm_precious.bag"}));
 }
 
 TEST_F(RecorderFolderTest, TheFileOfAnAlarmThatStandsStays) {
-  const RecorderFolder folder(path_.string(), "/watch", 2, 1000000);
-  folder.create();
-  for (const char* const name :
-       {"alarm_2026-11-22-05-10-33.001.bag", "dump_2026-11-22-05-10-33.002.bag",
-        "dump_2026-11-22-05-10-33.003.bag", "dump_2026-11-22-05-10-33.004.bag"}) {
-    write(name, 1);
-  }
-  folder.removeOldest((path_ / "alarm_2026-11-22-05-10-33.001.bag").string());
-  EXPECT_EQ(names(), (std::set<std::string>{"alarm_2026-11-22-05-10-33.001.bag",
-                                            "dump_2026-11-22-05-10-33.004.bag"}));
+  folder().create();
+  write({bag("alarm", 1), bag("dump", 2), bag("dump", 3), bag("dump", 4)});
+  folder(2).removeOldest(path("far/recorder/" + bag("alarm", 1)));
+  EXPECT_EQ(files(), (Names{bag("alarm", 1), bag("dump", 4)}));
 }
 
 TEST_F(RecorderFolderTest, TheirSizeIsBoundedButTheNewestStays) {
-  const RecorderFolder folder(path_.string(), "/watch", 100, 1000);
-  folder.create();
-  write("alarm_2026-11-22-05-10-33.001.bag", 400);
-  write("alarm_2026-11-22-05-10-33.002.bag", 400);
-  folder.removeOldest("");
-  EXPECT_EQ(names().size(), 2U);
-  write("alarm_2026-11-22-05-10-33.003.bag", 400);
-  folder.removeOldest("");
-  EXPECT_EQ(names(), (std::set<std::string>{"alarm_2026-11-22-05-10-33.002.bag",
-                                            "alarm_2026-11-22-05-10-33.003.bag"}));
-  write("alarm_2026-11-22-05-10-33.004.bag", 5000);
-  folder.removeOldest("");
-  EXPECT_EQ(names(), (std::set<std::string>{"alarm_2026-11-22-05-10-33.004.bag"}));
+  const RecorderFolder bounded = folder(100, 1000);
+  bounded.create();
+  write({bag("alarm", 1), bag("alarm", 2)}, 400);
+  bounded.removeOldest("");
+  EXPECT_EQ(files(), (Names{bag("alarm", 1), bag("alarm", 2)}));
+  write({bag("alarm", 3)}, 400);
+  bounded.removeOldest("");
+  EXPECT_EQ(files(), (Names{bag("alarm", 2), bag("alarm", 3)}));
+  write({bag("alarm", 4)}, 5000);
+  bounded.removeOldest("");
+  EXPECT_EQ(files(), (Names{bag("alarm", 4)}));
 }
 
 }  // namespace

@@ -4,15 +4,14 @@
 
 #include <gtest/gtest.h>
 #include <rosbag/view.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <boost/filesystem.hpp>
-#include <csignal>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "../in_folder.h"
+#include "../ros/serialized.h"
 #include "monitor/session.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/ros/bag/bag_reader.h"
@@ -61,14 +60,13 @@ std::vector<core::Event> events() {
   return events;
 }
 
-class ReplayedMonitorTest : public testing::Test {
+class ReplayedMonitorTest : public InFolder {
  protected:
   ReplayedMonitorTest() {
     parameters_.method = MonitorParameters::Method::kPaper;
     parameters_.detector.settle_time = core::kNanosecondsPerSecond;
     vocabulary_.push_back({"/joy", "/joy", "std_msgs/String"});
   }
-  ~ReplayedMonitorTest() override { boost::filesystem::remove_all(folder_); }
 
   /// What the monitor publishes of the events while they happen.
   void monitor() {
@@ -120,27 +118,22 @@ class ReplayedMonitorTest : public testing::Test {
   }
 
   /// In the order of a bag that is read: the clock was set back.
-  static std::vector<std::string> inOrderOfTime(std::vector<SelfAwareness> messages) {
+  static std::vector<std::vector<std::uint8_t>> inOrderOfTime(
+      std::vector<SelfAwareness> messages) {
     std::stable_sort(messages.begin(), messages.end(),
                      [](const auto& a, const auto& b) { return a.header.stamp < b.header.stamp; });
     return serialized(messages);
   }
-  static std::vector<std::string> serialized(const std::vector<SelfAwareness>& messages) {
-    std::vector<std::string> all;
+  static std::vector<std::vector<std::uint8_t>> serialized(
+      const std::vector<SelfAwareness>& messages) {
+    std::vector<std::vector<std::uint8_t>> all;
     for (const SelfAwareness& message : messages) {
-      std::string bytes(ros::serialization::serializationLength(message), '\0');
-      ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(&bytes[0]),
-                                         static_cast<std::uint32_t>(bytes.size()));
-      ros::serialization::serialize(stream, message);
-      all.push_back(bytes);
+      all.push_back(ros1::serialized(message));
     }
     return all;
   }
 
-  const boost::filesystem::path folder_ =
-      boost::filesystem::temp_directory_path() / boost::filesystem::unique_path();
-  const bool created_ = boost::filesystem::create_directory(folder_);
-  const std::string path_ = (folder_ / "out.bag").string();
+  const std::string path_ = path("out.bag");
   MonitorParameters parameters_;
   std::vector<core::EventType> vocabulary_ = kTypes;
   std::vector<SelfAwareness> statuses_;
@@ -184,7 +177,7 @@ TEST_F(ReplayedMonitorTest, TheDiagnosticsGoOnWhileTheClockIsSet) {
 TEST_F(ReplayedMonitorTest, AResultBagIsNotMistakenForARecording) {
   replay();
   EXPECT_TRUE(ros1::ResultBag::isOne(path_));
-  const std::string recording = (folder_ / "recording.bag").string();
+  const std::string recording = path("recording.bag");
   {
     rosbag::Bag bag(recording, rosbag::bagmode::Write);
     bag.write("/self_awareness/status", ros::TIME_MIN, SelfAwareness());
@@ -195,33 +188,12 @@ TEST_F(ReplayedMonitorTest, AResultBagIsNotMistakenForARecording) {
     bag.write("/scan", ros::TIME_MIN, SelfAwareness());
   }
   EXPECT_FALSE(ros1::ResultBag::isOne(path_)) << "somebody has added to it";
-  EXPECT_FALSE(ros1::ResultBag::isOne((folder_ / "missing.bag").string()));
+  EXPECT_FALSE(ros1::ResultBag::isOne(path("missing.bag")));
 }
 
 TEST_F(ReplayedMonitorTest, AResultBagThatCannotBeWrittenIsAnError) {
-  EXPECT_THROW(ros1::ResultBag((folder_ / "missing" / "out.bag").string()), ros1::BagError);
+  EXPECT_THROW(ros1::ResultBag(path("missing/out.bag")), ros1::BagError);
   EXPECT_THROW(ros1::ResultBag("/dev/full"), ros1::BagError);
-}
-
-TEST_F(ReplayedMonitorTest, ADiskThatBecomesFullIsAnError) {
-  rlimit before{};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const rlimit small{100000, before.rlim_max};
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  EXPECT_THROW(
-      {
-        ros1::ResultBag bag(path_);
-        SelfAwareness status;
-        for (std::uint32_t i = 0; i < 100000; ++i) {
-          status.header.seq = i * 2654435761U;  // not to be compressed
-          bag.writeStatus(kStart + i, status);
-        }
-        bag.close();
-      },
-      ros1::BagError);
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
 }
 
 }  // namespace

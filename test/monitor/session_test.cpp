@@ -1,6 +1,7 @@
 #include "monitor/session.h"
 
 #include <gtest/gtest.h>
+#include <std_msgs/String.h>
 
 #include <algorithm>
 #include <optional>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "../core/evidence/recordings.h"
+#include "../ros/serialized.h"
 #include "self_awareness/core/evidence/count/trainer.h"
 
 namespace self_awareness {
@@ -71,33 +73,39 @@ ros1::TrainedModel modelOfAnswers() {
   return model;
 }
 
-MonitorParameters byPaper() {
+/// Whose verdicts nobody asks for.
+struct Quiet : Session {
+  explicit Quiet(const ros1::TrainedModel& model, const MonitorParameters& parameters = {})
+      : Session(model, parameters, [](const core::Verdict&) {}) {}
+};
+
+MonitorParameters paper() {
   MonitorParameters parameters;
   parameters.method = MonitorParameters::Method::kPaper;
   return parameters;
 }
 
-ros1::ConnectionEncoder connect(const Session& session, const std::string& topic) {
+struct ByPaper : Quiet {
+  explicit ByPaper(const ros1::TrainedModel& model) : Quiet(model, paper()) {}
+};
+
+ros1::ConnectionEncoder connect(const Session& session, const std::string& node,
+                                const std::string& topic) {
   return session.encoder()
-      ->connect({"/talker", topic, "std_msgs/String", "string data", false, ""})
+      ->connect({node, topic, "std_msgs/String", "string data", false, ""})
       .value();
 }
 
-std::string serialized(const std::string& data) {
-  std::string bytes = std::string("\0\0\0\0", 4) + data;
-  bytes[0] = static_cast<char>(data.size());
-  return bytes;
-}
-
-core::EventId encode(ros1::ConnectionEncoder& connection, const std::string& data) {
-  const std::string bytes = serialized(data);
-  return connection.id(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+std::vector<std::uint8_t> message(const std::string& data) {
+  std_msgs::String message;
+  message.data = data;
+  return ros1::serialized(message);
 }
 
 TEST(Session, WhoIsOptionalIsAcceptedAsAbsentBesidesWhatOperatorsAccept) {
-  MonitorParameters parameters = byPaper();
+  MonitorParameters parameters = paper();
   parameters.optional = {"/play*", "/pose"};
-  Session session(model(), parameters, [](const core::Verdict& /*verdict*/) {});
+  Quiet session(model(), parameters);
   const std::set<std::string> optional = {"/player", "/slam", "/manager"};
   EXPECT_EQ(session.optional(), optional);
   core::Acceptances accepted;
@@ -111,31 +119,23 @@ TEST(Session, WhoIsOptionalIsAcceptedAsAbsentBesidesWhatOperatorsAccept) {
   EXPECT_TRUE(session.accepted().covers("/slam", "/pose", core::Kind::kSlow));
   EXPECT_FALSE(session.accepted().covers("/player", "/scan", core::Kind::kSlow));
   parameters.optional.assign(core::Acceptances::kMost, "/x");
-  EXPECT_NO_THROW(Session(model(), parameters, [](const core::Verdict& /*verdict*/) {}));
+  EXPECT_NO_THROW(Quiet(model(), parameters));
   for (std::size_t k = 0; k < core::Acceptances::kMost; ++k) {
     parameters.optional[k] += std::to_string(k);
   }
-  EXPECT_THROW(Session(model(), parameters, [](const core::Verdict& /*verdict*/) {}),
-               std::invalid_argument);
-}
-
-TEST(Session, KnowsTheModelsTopicsAndWhatItsOwnProcessPublishes) {
-  const Session session(model(), byPaper(), [](const core::Verdict&) {});
-  const LiveSource::Wanted wanted = session.wanted("/manager", 1);
-  EXPECT_EQ(wanted.model_topics, (std::set<std::string>{"/pose", "/scan"}));
-  const ros1::OwnOutput& own = wanted.own_output;
-  EXPECT_FALSE(own.covers("/manager", "/pose")) << "the robot's, by the model";
-  EXPECT_TRUE(own.covers("/manager", "/watch/status"));
-  EXPECT_FALSE(own.covers("/slam", "/watch/status"));
+  EXPECT_THROW(Quiet(model(), parameters), std::invalid_argument);
 }
 
 TEST(Session, KnowsTheModelsNamesOfAnotherRobotsNodesAndTopics) {
   ros1::TrainedModel trained = model();
   trained.encoding.renames = {{"/r[0-9]+/(.*)", "/\\1"}};
-  Session session(trained, byPaper(), [](const core::Verdict&) {});
+  ByPaper session(trained);
   EXPECT_EQ(session.typesOf({"/r7/slam_4242_1600000000000", "/r7/pose"}),
             (std::vector<core::EventId>{1}));
-  EXPECT_FALSE(session.wanted("/r7/manager", 1).own_output.covers("/r7/manager", "/r7/pose"));
+  const LiveSource::Wanted wanted = session.wanted("/r7/manager", 1);
+  EXPECT_EQ(wanted.model_topics, (std::set<std::string>{"/pose", "/scan"}));
+  EXPECT_FALSE(wanted.own_output.covers("/r7/manager", "/r7/pose")) << "the model knows it";
+  EXPECT_TRUE(wanted.own_output.covers("/r7/manager", "/r7/watch/status"));
   ros1::Graph graph;
   graph.topics["/r7/scan"] = {"T", {"/r7/player"}, {"/r7/slam"}};
   session.addEdges(graph, "/r7/self_awareness");
@@ -144,46 +144,32 @@ TEST(Session, KnowsTheModelsNamesOfAnotherRobotsNodesAndTopics) {
 
 TEST(Session, IsCalibratedForTheDetectorThatWasChosen) {
   ros1::TrainedModel trained = model();
-  EXPECT_FALSE(Session(trained, byPaper(), [](const core::Verdict&) {}).calibrated());
+  EXPECT_FALSE(ByPaper(trained).calibrated());
   trained.paper_calibration = core::paper::Calibration();
   trained.paper_calibration->threshold = 0.1;
-  EXPECT_TRUE(Session(trained, byPaper(), [](const core::Verdict&) {}).calibrated());
+  EXPECT_TRUE(ByPaper(trained).calibrated());
 }
 
 TEST(Session, NeedsTheCountsOfItsDetector) {
-  EXPECT_THROW(Session(model(), MonitorParameters(), [](const core::Verdict&) {}),
-               std::invalid_argument);
+  EXPECT_THROW(Quiet{model()}, std::invalid_argument);
   ros1::TrainedModel without = model();
   without.dropCounts();
-  EXPECT_THROW(Session(without, byPaper(), [](const core::Verdict&) {}), std::invalid_argument);
-}
-
-TEST(Session, JudgesItsWindowsInTurn) {
-  std::vector<std::int64_t> starts;
-  Session session(model(), byPaper(),
-                  [&](const core::Verdict& verdict) { starts.push_back(verdict.window->start); });
-  session.detector().add({0, 0});
-  session.detector().advance(2 * session.window());
-  EXPECT_EQ(starts, (std::vector<std::int64_t>{0, session.window()}));
+  EXPECT_THROW(ByPaper{without}, std::invalid_argument);
 }
 
 TEST(Session, SaysWhoseDelaysAreNotWatchedNow) {
-  Session session(modelOfAnswers(), MonitorParameters(), [](const core::Verdict&) {});
+  Quiet session(modelOfAnswers());
   const std::vector<std::string> words = session.disarmed();
   EXPECT_NE(std::find(words.begin(), words.end(), "/b on /y after /a on /x"), words.end());
-  EXPECT_TRUE(Session(model(), byPaper(), [](const core::Verdict&) {}).disarmed().empty());
+  EXPECT_TRUE(ByPaper(model()).disarmed().empty());
 }
 
 TEST(Session, SaysTheModeThatTheRobotTells) {
-  Session session(modelWithModes(), MonitorParameters(), [](const core::Verdict&) {});
-  ros1::ConnectionEncoder logic =
-      session.encoder()
-          ->connect({"/logic", "/state", "std_msgs/String", "string data", false, ""})
-          .value();
+  Quiet session(modelWithModes());
+  ros1::ConnectionEncoder logic = connect(session, "/logic", "/state");
   const auto tell = [&](std::int64_t stamp, const std::string& mode) {
-    const std::string bytes = serialized(mode);
-    session.detector().add(
-        {stamp, logic.mode(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size())});
+    const std::vector<std::uint8_t> bytes = message(mode);
+    session.detector().add({stamp, logic.mode(bytes.data(), bytes.size())});
   };
   EXPECT_EQ(session.mode(0), "not known (/state)");
   tell(10 * kSecond, "DOCKED");
@@ -203,19 +189,19 @@ TEST(Session, SaysTheModeThatTheRobotTells) {
 TEST(Session, SaysNoModeWhereNobodyTellsIt) {
   ros1::TrainedModel without = modelWithModes();
   without.encoding.mode.reset();
-  EXPECT_EQ(Session(without, MonitorParameters(), [](const core::Verdict&) {}).mode(0), "");
+  EXPECT_EQ(Quiet(without).mode(0), "");
   ros1::TrainedModel of_paper = model();
   of_paper.encoding.mode = ros1::ModeField{"/state", "data"};
-  EXPECT_EQ(Session(of_paper, byPaper(), [](const core::Verdict&) {}).mode(0), "")
-      << "the paper knows no modes";
+  EXPECT_EQ(ByPaper(of_paper).mode(0), "") << "the paper knows no modes";
 }
 
 TEST(Session, EverNewEventTypesDoNotFillTheMemory) {
-  const Session session(model(), byPaper(), [](const core::Verdict&) {});
-  ros1::ConnectionEncoder connection = connect(session, "/joystick");
+  const ByPaper session(model());
+  ros1::ConnectionEncoder connection = connect(session, "/talker", "/joystick");
   std::set<core::EventId> ids;
   for (std::size_t i = 0; i < 2 * Session::kMostUnknownTypes; ++i) {
-    ids.insert(encode(connection, std::to_string(i)));
+    const std::vector<std::uint8_t> bytes = message(std::to_string(i));
+    ids.insert(connection.id(bytes.data(), bytes.size()));
   }
   EXPECT_EQ(session.vocabulary().size(), session.types().size() + Session::kMostUnknownTypes + 1);
   EXPECT_EQ(session.vocabulary().at(*ids.rbegin()).scope, "(further topics)");

@@ -11,27 +11,16 @@
 #include <xmlrpcpp/XmlRpcClient.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
-#include <algorithm>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "../await.h"
+
 namespace self_awareness {
 namespace {
 
-constexpr double kAtOnce = 5;  // [s]: what the monitor promises
-
-bool await(const std::function<bool()>& condition, double seconds = 20) {
-  const ros::SteadyTime deadline = ros::SteadyTime::now() + ros::WallDuration(seconds);
-  while (!condition()) {
-    if (ros::SteadyTime::now() > deadline) {
-      return false;
-    }
-    ros::WallDuration(0.01).sleep();
-  }
-  return true;
-}
+constexpr int kAtOnce = 5;  // [s]: what the monitor promises
 
 /// Says something to the master, as any stranger can.
 XmlRpc::XmlRpcValue tellMaster(const std::string& method,
@@ -87,7 +76,7 @@ class DiscoveryTest : public testing::Test {
     return node_handle_.advertise<std_msgs::String>(topic, 1);
   }
   /// Whether a message that is published now is heard.
-  bool hears(const ros::Publisher& publisher, double seconds = kAtOnce) {
+  bool hears(const ros::Publisher& publisher, int seconds = kAtOnce) {
     const std::uint64_t before = arrivals_.arrived();
     return await(
         [&] {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <optional>
 
 #include "self_awareness/core/stream/event.h"
 

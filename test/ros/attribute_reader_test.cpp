@@ -1,8 +1,6 @@
 #include "self_awareness/ros/attribute_reader.h"
 
 #include <gtest/gtest.h>
-#include <ros/message_traits.h>
-#include <ros/serialization.h>
 #include <sensor_msgs/Image.h>
 #include <std_msgs/String.h>
 
@@ -11,6 +9,7 @@
 #include <vector>
 
 #include "self_awareness/core/stream/event.h"
+#include "serialized.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -20,25 +19,13 @@ constexpr std::int64_t kNow = 1700000000000000000;
 
 AttributeReader readerOf(const std::string& definition, const std::string& datatype,
                          bool latching = false) {
-  Connection connection;
-  connection.definition = definition;
-  connection.datatype = datatype;
-  connection.latching = latching;
-  return AttributeReader(connection);
+  return AttributeReader({"", "", datatype, definition, latching, ""});
 }
 
 template <typename Message>
 AttributeReader readerOf(bool latching = false) {
   namespace traits = ros::message_traits;
   return readerOf(traits::definition<Message>(), traits::datatype<Message>(), latching);
-}
-
-template <typename Message>
-std::vector<std::uint8_t> bytesOf(const Message& message) {
-  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
-  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  ros::serialization::serialize(stream, message);
-  return bytes;
 }
 
 /// Reads a message in pieces.
@@ -78,28 +65,28 @@ TEST(AttributeReader, KnowsAHeaderByTheDefinition) {
 TEST(AttributeReader, ReadsAgeNumberSizeAndContent) {
   for (const std::size_t piece : {1, 7, 4096, 1000000}) {
     AttributeReader reader = readerOf<sensor_msgs::Image>();
-    const Attributes first = read(reader, bytesOf(image(5, 0.2)), piece);
+    const Attributes first = read(reader, serialized(image(5, 0.2)), piece);
     EXPECT_EQ(first.age, core::ageClass(core::toNanoseconds(0.2)));
-    EXPECT_EQ(first.size, core::sizeClass(bytesOf(image(5, 0.2)).size()));
+    EXPECT_EQ(first.size, core::sizeClass(serialized(image(5, 0.2)).size()));
     EXPECT_EQ(first.step, Attributes::Step::kNotKnown);
     EXPECT_FALSE(first.same);
-    const Attributes second = read(reader, bytesOf(image(6, 0.1)), piece);
+    const Attributes second = read(reader, serialized(image(6, 0.1)), piece);
     EXPECT_EQ(second.step, Attributes::Step::kNext);
     EXPECT_TRUE(second.same) << "the header is no content";
     sensor_msgs::Image other = image(8, -3);
     other.data[0] = 8;
-    const Attributes third = read(reader, bytesOf(other), piece);
+    const Attributes third = read(reader, serialized(other), piece);
     EXPECT_EQ(third.step, Attributes::Step::kLostOne);
     EXPECT_LT(core::ageOf(third.age), -2);
     EXPECT_FALSE(third.same);
-    EXPECT_FALSE(read(reader, bytesOf(image(9, 0, 99999)), piece).same);
+    EXPECT_FALSE(read(reader, serialized(image(9, 0, 99999)), piece).same);
   }
 }
 
 TEST(AttributeReader, OfLinesForPeopleNothingIsKnown) {
   AttributeReader reader =
       readerOf(ros::message_traits::definition<sensor_msgs::Image>(), "rosgraph_msgs/Log");
-  const std::vector<std::uint8_t> bytes = bytesOf(image(1, 0.02));
+  const std::vector<std::uint8_t> bytes = serialized(image(1, 0.02));
   EXPECT_EQ(read(reader, bytes), Attributes{});
   reader.begin(bytes.size());
   EXPECT_EQ(reader.next().begin, reader.next().end) << "nothing is to be read";
@@ -109,7 +96,7 @@ TEST(AttributeReader, ALatchingPublisherAlsoNumbersWhatItSendsToNewSubscribers) 
   AttributeReader plain = readerOf<sensor_msgs::Image>();
   AttributeReader latching = readerOf<sensor_msgs::Image>(true);
   for (const std::uint32_t number : {1U, 2U, 4U}) {
-    const std::vector<std::uint8_t> bytes = bytesOf(image(number, 0.02));
+    const std::vector<std::uint8_t> bytes = serialized(image(number, 0.02));
     EXPECT_EQ(read(plain, bytes).isAfterLoss(), number == 4);
     EXPECT_EQ(read(latching, bytes).step, Attributes::Step::kNotKnown);
   }
@@ -119,20 +106,20 @@ TEST(AttributeReader, AStampOfZeroIsNone) {
   AttributeReader reader = readerOf<sensor_msgs::Image>();
   sensor_msgs::Image message = image(1, 0);
   message.header.stamp = ros::Time();
-  EXPECT_EQ(read(reader, bytesOf(message)).age, Attributes::kZeroStamp);
+  EXPECT_EQ(read(reader, serialized(message)).age, Attributes::kZeroStamp);
 }
 
 TEST(AttributeReader, WithoutAHeaderThereIsSizeAndContent) {
   AttributeReader reader = readerOf<std_msgs::String>();
   std_msgs::String message;
   message.data = "on";
-  read(reader, bytesOf(message));
-  const Attributes again = read(reader, bytesOf(message));
+  read(reader, serialized(message));
+  const Attributes again = read(reader, serialized(message));
   EXPECT_EQ(again.age, Attributes::kNoAge);
   EXPECT_EQ(again.step, Attributes::Step::kNotKnown);
   EXPECT_TRUE(again.same);
   message.data = "of";
-  EXPECT_FALSE(read(reader, bytesOf(message)).same);
+  EXPECT_FALSE(read(reader, serialized(message)).same);
   EXPECT_EQ(read(reader, {}).size, core::sizeClass(0));
 }
 

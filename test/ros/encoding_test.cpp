@@ -1,14 +1,8 @@
 #include "self_awareness/ros/encoding.h"
 
 #include <gtest/gtest.h>
-#include <ros/message_traits.h>
-#include <ros/serialization.h>
-#include <rosgraph_msgs/Log.h>
-#include <sensor_msgs/JointState.h>
-#include <sensor_msgs/PointCloud2.h>
 #include <std_msgs/String.h>
 #include <visualization_msgs/Marker.h>
-#include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,39 +13,18 @@
 #include <utility>
 #include <vector>
 
+#include "../problem.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/stream/vocabulary.h"
-#include "self_awareness/ros/message_field.h"
 #include "self_awareness/ros/stable_name.h"
+#include "serialized.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-template <typename Message>
-std::vector<std::uint8_t> serialize(const Message& message) {
-  std::vector<std::uint8_t> buffer(ros::serialization::serializationLength(message));
-  ros::serialization::OStream stream(buffer.data(), static_cast<std::uint32_t>(buffer.size()));
-  ros::serialization::serialize(stream, message);
-  return buffer;
-}
-
-template <typename Message>
-std::string readField(const Message& message, const std::string& path) {
-  const std::vector<std::uint8_t> buffer = serialize(message);
-  return MessageField(ros::message_traits::definition<Message>(),
-                      ros::message_traits::datatype<Message>(), path)
-      .read(buffer.data(), buffer.size());
-}
-
-template <typename Message>
-std::string errorOf(const std::string& path) {
-  try {
-    MessageField(ros::message_traits::definition<Message>(),
-                 ros::message_traits::datatype<Message>(), path);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+/// Why rules are refused; empty: they are not.
+std::string problemIn(const EncodingRules& rules) {
+  return problemOf([&] { rules.validate(); });
 }
 
 class EncoderTest : public testing::Test {
@@ -60,44 +33,20 @@ class EncoderTest : public testing::Test {
     return Encoder(rules,
                    [this](const core::EventType& type) { return vocabulary_.intern(type); });
   }
-  static Connection scan() {
-    Connection connection;
-    connection.callerid = "/player";
-    connection.topic = "/scan";
-    connection.datatype = "sensor_msgs/LaserScan";
-    return connection;
+  static Connection scan() { return {"/player", "/scan", "sensor_msgs/LaserScan", "", false, ""}; }
+  /// Of a node that sends such messages.
+  template <typename Message>
+  static Connection connectionOf(const std::string& callerid, const std::string& topic) {
+    return connectionFrom(*headerOf<Message>(callerid), topic);
   }
 
   core::Vocabulary vocabulary_;
 };
 
-TEST(Connection, IsFilledFromItsHeader) {
-  const Connection connection = connectionFrom({{"callerid", "/slam"},
-                                                {"type", "nav_msgs/OccupancyGrid"},
-                                                {"message_definition", "int8[] data"},
-                                                {"latching", "1"},
-                                                {"topic", "/as_the_publisher_calls_it"}},
-                                               "/map");
-  EXPECT_EQ(connection.callerid, "/slam");
-  EXPECT_EQ(connection.topic, "/map");
-  EXPECT_EQ(connection.datatype, "nav_msgs/OccupancyGrid");
-  EXPECT_EQ(connection.definition, "int8[] data");
-  EXPECT_TRUE(connection.latching);
-}
-
-TEST(Connection, ToleratesAHeaderThatLacksFields) {
-  const Connection connection = connectionFrom({{"latching", "0"}}, "/map");
-  EXPECT_EQ(connection.callerid, "");
-  EXPECT_EQ(connection.datatype, "");
-  EXPECT_FALSE(connection.latching);
-}
-
 TEST(Connection, NamesAreWhole) {
-  for (const char* typed : {"/scan", "scan", "//scan", "/scan/"}) {
-    const Connection connection = connectionFrom({{"callerid", typed}}, typed);
-    EXPECT_EQ(connection.topic, "/scan") << typed;
-    EXPECT_EQ(connection.callerid, "/scan") << typed;
-  }
+  const Connection connection = connectionFrom({{"callerid", "scan"}}, "//scan");
+  EXPECT_EQ(connection.topic, "/scan");
+  EXPECT_EQ(connection.callerid, "/scan");
   EXPECT_EQ(connectionFrom({{"topic", "/robot//scan"}}, "scan").topic, "/robot/scan")
       << "recorded in a namespace";
   EXPECT_EQ(connectionFrom({{"topic", "/other"}}, "/scan").topic, "/scan");
@@ -113,77 +62,16 @@ TEST(ResolvedName, IsTheWholeOneAndStaysSo) {
   }
 }
 
-TEST(StableName, IsWhole) {
-  EXPECT_EQ(stableName("rostopic_10263_1795206536731"), "/rostopic");
-  EXPECT_EQ(stableName("//ns/talker_4242_1430709709567"), "/ns/talker");
-  EXPECT_EQ(stableName(""), "");
-}
-
 TEST(StableName, DropsTheNumbersOfAnonymousNodes) {
-  EXPECT_EQ(stableName("/rostopic_10263_1795206536731"), "/rostopic");
+  EXPECT_EQ(stableName("rostopic_10263_1795206536731"), "/rostopic") << "and the name is whole";
   EXPECT_EQ(stableName("/record_1795206538727453261"), "/record");
-  EXPECT_EQ(stableName("/ns/talker_4242_1430709709567"), "/ns/talker");
+  EXPECT_EQ(stableName("//ns/talker_4242_1430709709567"), "/ns/talker");
   EXPECT_EQ(stableName("/viewer_host_314_5876409862321874321"), "/viewer_host");
 }
 
 TEST(StableName, KeepsNumbersThatBelongToTheName) {
   for (const char* name : {"/camera_752112070204", "/laser_2", "/wheel_1_2", "/robot_20211104"}) {
     EXPECT_EQ(stableName(name), name);
-  }
-}
-
-TEST(MessageField, ReadsAfterStringsArraysAndNestedMessages) {
-  visualization_msgs::Marker marker;
-  marker.header.frame_id = "map";
-  marker.ns = "people";
-  marker.id = -7;
-  marker.action = visualization_msgs::Marker::DELETE;
-  marker.points.resize(3);
-  marker.text = "Ada";
-  marker.mesh_use_embedded_materials = 1;
-  EXPECT_EQ(readField(marker, "action"), "2");
-  EXPECT_EQ(readField(marker, "id"), "-7");
-  EXPECT_EQ(readField(marker, "ns"), "people");
-  EXPECT_EQ(readField(marker, "header.frame_id"), "map");
-  EXPECT_EQ(readField(marker, "text"), "Ada");
-  EXPECT_EQ(readField(marker, "mesh_use_embedded_materials"), "1");
-
-  sensor_msgs::PointCloud2 cloud;
-  cloud.fields.resize(2);  // an array of messages that hold a string
-  cloud.fields[0].name = "x";
-  cloud.fields[1].name = "intensity";
-  cloud.point_step = 4000000000U;
-  cloud.data.resize(17);
-  cloud.is_dense = 1;
-  EXPECT_EQ(readField(cloud, "point_step"), "4000000000");
-  EXPECT_EQ(readField(cloud, "is_dense"), "1");
-
-  rosgraph_msgs::Log log;
-  log.level = rosgraph_msgs::Log::ERROR;
-  log.name = std::string(200, 'n');
-  EXPECT_EQ(readField(log, "level"), "8");
-  EXPECT_EQ(readField(log, "name"), std::string(64, 'n'));
-}
-
-TEST(MessageField, SaysWhatIsWrongWithAField) {
-  using visualization_msgs::Marker;
-  EXPECT_EQ(errorOf<Marker>("verb"),
-            "type field visualization_msgs/Marker: verb: has no field 'verb'");
-  EXPECT_NE(errorOf<Marker>("pose").find("is a message itself"), std::string::npos);
-  EXPECT_NE(errorOf<Marker>("points").find("is an array"), std::string::npos);
-  EXPECT_NE(errorOf<Marker>("scale.x").find("is a float64"), std::string::npos);
-  EXPECT_NE(errorOf<Marker>("pose.speed").find("in its geometry_msgs/Pose"), std::string::npos);
-  EXPECT_NE(errorOf<sensor_msgs::JointState>("name").find("is an array"), std::string::npos);
-}
-
-TEST(MessageField, RefusesAMessageThatIsTooShort) {
-  visualization_msgs::Marker marker;
-  marker.ns = "people";
-  const std::vector<std::uint8_t> buffer = serialize(marker);
-  const MessageField field(ros::message_traits::definition(marker),
-                           ros::message_traits::datatype(marker), "action");
-  for (std::size_t size = 0; size < 34; ++size) {  // action ends after 12 + 4 + 4 + 4 + 6 + 4 + 4
-    EXPECT_THROW(field.read(buffer.data(), size), std::out_of_range) << size;
   }
 }
 
@@ -202,16 +90,12 @@ TEST_F(EncoderTest, ATypeFieldTellsWhatAMessageDoes) {
   EncodingRules rules;
   rules.type_fields = {{"visualization_msgs/Marker", "action"}};
   visualization_msgs::Marker marker;
-  Connection connection;
-  connection.callerid = "/anchoring";
-  connection.topic = "/people";
-  connection.datatype = ros::message_traits::datatype(marker);
-  connection.definition = ros::message_traits::definition(marker);
-  auto encoder = makeEncoder(rules).connect(connection);
+  auto encoder = makeEncoder(rules).connect(
+      connectionOf<visualization_msgs::Marker>("/anchoring", "/people"));
   ASSERT_TRUE(encoder && encoder->needsContent());
-  const std::vector<std::uint8_t> add = serialize(marker);
+  const std::vector<std::uint8_t> add = serialized(marker);
   marker.action = visualization_msgs::Marker::DELETE;
-  const std::vector<std::uint8_t> remove = serialize(marker);
+  const std::vector<std::uint8_t> remove = serialized(marker);
   const core::EventId added = encoder->id(add.data(), add.size());
   const core::EventId removed = encoder->id(remove.data(), remove.size());
   EXPECT_EQ(vocabulary_.at(added).type, "visualization_msgs/Marker[action=0]");
@@ -220,12 +104,8 @@ TEST_F(EncoderTest, ATypeFieldTellsWhatAMessageDoes) {
 }
 
 Connection loads() {
-  Connection connection;
-  connection.callerid = "/arm";
-  connection.topic = "/load";
-  connection.datatype = "a/Load";
-  connection.definition = "uint8 number\nfloat32 force\nint16 level\nstring text";
-  return connection;
+  return {"/arm", "/load", "a/Load", "uint8 number\nfloat32 force\nint16 level\nstring text",
+          false,  ""};
 }
 
 std::vector<std::uint8_t> loadOf(float force, std::int16_t level) {
@@ -261,28 +141,24 @@ TEST_F(EncoderTest, ValuesArePutIntoClasses) {
 }
 
 TEST_F(EncoderTest, ClassesThatCannotBeAreNamed) {
-  const auto why = [&](const EncodingRules& rules) -> std::string {
-    try {
+  const auto why = [&](const EncodingRules& rules) {
+    return problemOf([&] {
       rules.validate();
       makeEncoder(rules).connect(loads());
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
+    });
   };
   EXPECT_EQ(why(rulesOfClasses("force", {1, 2, 3})), "");
-  EXPECT_NE(why(rulesOfClasses("force", {})).find("a/Load: force are not learned yet"),
-            std::string::npos);
-  EXPECT_NE(why(rulesOfClasses("text", {1})).find("only numbers have classes"), std::string::npos);
+  EXPECT_TRUE(has(why(rulesOfClasses("force", {})), "a/Load: force are not learned yet"));
+  EXPECT_TRUE(has(why(rulesOfClasses("text", {1})), "only numbers have classes"));
   for (const std::vector<double>& bounds :
        {std::vector<double>{1, 2, 3, 4}, {2, 1}, {1, 1}, {NAN}, {INFINITY}}) {
-    EXPECT_NE(why(rulesOfClasses("force", bounds)).find("ascending bounds"), std::string::npos);
+    EXPECT_TRUE(has(why(rulesOfClasses("force", bounds)), "ascending bounds"));
   }
   EncodingRules rules = rulesOfClasses("force", {1});
   rules.classes["a/Load"].number = 17;
-  EXPECT_NE(why(rules).find("2 to 16, not 17"), std::string::npos);
+  EXPECT_TRUE(has(why(rules), "2 to 16, not 17"));
   rules.type_fields.clear();
-  EXPECT_NE(why(rules).find("a/Load"), std::string::npos);
+  EXPECT_TRUE(has(why(rules), "a/Load"));
 }
 
 EncodingRules rulesOfMode(const std::string& topic, const std::string& field) {
@@ -293,11 +169,7 @@ EncodingRules rulesOfMode(const std::string& topic, const std::string& field) {
 
 TEST_F(EncoderTest, AMessageOfTheModeIsAnEventAndTellsTheMode) {
   std_msgs::String message;
-  Connection connection;
-  connection.callerid = "/logic";
-  connection.topic = "/r7/state";
-  connection.datatype = ros::message_traits::datatype(message);
-  connection.definition = ros::message_traits::definition(message);
+  Connection connection = connectionOf<std_msgs::String>("/logic", "/r7/state");
   connection.latching = true;
   EncodingRules rules = rulesOfMode("/state", "data");
   rules.renames = {{"/r[0-9]+/(.*)", "/\\1"}};
@@ -307,9 +179,9 @@ TEST_F(EncoderTest, AMessageOfTheModeIsAnEventAndTellsTheMode) {
   EXPECT_TRUE(encoder->needsContent());
   EXPECT_FALSE(encoder->accept()) << "what was latched is still no event but of the mode";
   message.data = "DRIVING";
-  const std::vector<std::uint8_t> driving = serialize(message);
+  const std::vector<std::uint8_t> driving = serialized(message);
   message.data = "DOCKED";
-  const std::vector<std::uint8_t> docked = serialize(message);
+  const std::vector<std::uint8_t> docked = serialized(message);
   const core::EventId drives = encoder->mode(driving.data(), driving.size());
   EXPECT_EQ(core::toString(vocabulary_.at(drives)),
             "/logic /state std_msgs/String[mode: DRIVING]");
@@ -327,43 +199,31 @@ TEST_F(EncoderTest, AFieldOfTheModeThatIsNotThereIsNamed) {
   Connection connection = scan();
   connection.definition = "string data";
   connection.datatype = "std_msgs/String";
-  try {
-    makeEncoder(rulesOfMode("/scan", "state")).connect(connection);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("the mode on /scan: "), std::string::npos);
-    EXPECT_NE(std::string(error.what()).find("std_msgs/String: state"), std::string::npos);
-  }
+  const std::string problem =
+      problemOf([&] { makeEncoder(rulesOfMode("/scan", "state")).connect(connection); });
+  EXPECT_TRUE(has(problem, "the mode on /scan: "));
+  EXPECT_TRUE(has(problem, "std_msgs/String: state"));
 }
 
 TEST(EncodingRules, AModeThatCannotBeToldIsNamed) {
-  const auto why = [](const EncodingRules& rules) -> std::string {
-    try {
-      rules.validate();
-    } catch (const std::invalid_argument& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(why(rulesOfMode("/state", "data")), "");
+  EXPECT_EQ(problemIn(rulesOfMode("/state", "data")), "");
   for (const char* topic : {"state", "", "/a b", "~state"}) {
-    EXPECT_NE(why(rulesOfMode(topic, "data")).find("not the name of a topic"), std::string::npos)
-        << topic;
+    EXPECT_TRUE(has(problemIn(rulesOfMode(topic, "data")), "not the name of a topic"));
   }
-  EXPECT_NE(why(rulesOfMode("/state", "")).find("no field"), std::string::npos);
-  EXPECT_NE(why(rulesOfMode("/clock", "clock")).find("exclude_topics"), std::string::npos);
+  EXPECT_TRUE(has(problemIn(rulesOfMode("/state", "")), "no field"));
+  EXPECT_TRUE(has(problemIn(rulesOfMode("/clock", "clock")), "exclude_topics"));
   EncodingRules rules = rulesOfMode("/state", "data");
   rules.include_topics = {"/scan"};
-  EXPECT_NE(why(rules).find("include_topics"), std::string::npos);
+  EXPECT_TRUE(has(problemIn(rules), "include_topics"));
   rules.include_topics.emplace_back("/sta.*");
-  EXPECT_EQ(why(rules), "");
+  EXPECT_EQ(problemIn(rules), "");
 }
 
 TEST_F(EncoderTest, NobodyMakesUpAMode) {
   Connection connection = scan();
   connection.datatype = core::typeOfMode("a/B", "DRIVING");
   EXPECT_FALSE(makeEncoder(EncodingRules()).connect(connection));
-  EXPECT_NE(whyLeftOut(connection).find("is no name of a type"), std::string::npos);
+  EXPECT_TRUE(has(whyLeftOut(connection), "is no name of a type"));
 }
 
 TEST(EventTypes, TooManyModesAreNamed) {
@@ -371,12 +231,8 @@ TEST(EventTypes, TooManyModesAreNamed) {
   for (std::size_t k = 0; k <= kMostTypesOfField; ++k) {
     vocabulary.intern({"/logic", "/state", core::typeOfMode("a/B", std::to_string(k))});
   }
-  try {
-    checkEventTypes(rulesOfMode("/state", "id"), vocabulary);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("/state: id"), std::string::npos);
-  }
+  EXPECT_TRUE(has(problemOf([&] { checkEventTypes(rulesOfMode("/state", "id"), vocabulary); }),
+                  "/state: id"));
 }
 
 TEST_F(EncoderTest, SourcesMayBeLeftOut) {
@@ -439,22 +295,13 @@ TEST(Rename, WhatCannotBeDoneIsNamed) {
   const auto problem = [](const std::string& pattern, const std::string& name) {
     EncodingRules rules;
     rules.renames = {{pattern, name}};
-    try {
-      rules.validate();
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string();
-  };
-  const auto says = [&](const std::string& pattern, const std::string& name,
-                        const std::string& text) {
-    return problem(pattern, name).find(text) != std::string::npos;
+    return problemIn(rules);
   };
   EXPECT_EQ(problem("/r[0-9]+/(.*)", "/\\1"), "");
-  EXPECT_TRUE(says("/r(", "/x", "'/r(' is not a regular expression"));
-  EXPECT_TRUE(says("/r", "/\\1", "'/\\1' that takes the place of '/r' does not fit"));
-  EXPECT_TRUE(says("/r/(.*)", "\\1", "must begin with a slash"));
-  EXPECT_TRUE(says("/r", "/" + std::string(kLongestName, 'x'), "too long"));
+  EXPECT_TRUE(has(problem("/r(", "/x"), "'/r(' is not a regular expression"));
+  EXPECT_TRUE(has(problem("/r", "/\\1"), "'/\\1' that takes the place of '/r' does not fit"));
+  EXPECT_TRUE(has(problem("/r/(.*)", "\\1"), "must begin with a slash"));
+  EXPECT_TRUE(has(problem("/r", "/" + std::string(kLongestName, 'x')), "too long"));
 }
 
 TEST_F(EncoderTest, ToolsOfPeopleWhoWatchUseNoTopic) {
@@ -464,16 +311,6 @@ TEST_F(EncoderTest, ToolsOfPeopleWhoWatchUseNoTopic) {
   for (const char* tool : {"/record", "/recorder", "/rqt_graph", "/robot/rviz", "/rostopic"}) {
     EXPECT_FALSE(encoder.listens(tool)) << tool;
   }
-}
-
-TEST_F(EncoderTest, TheFirstMessageOfALatchingConnectionIsNoEvent) {
-  Connection connection = scan();
-  connection.latching = true;
-  auto encoder = makeEncoder(EncodingRules()).connect(connection);
-  EXPECT_FALSE(encoder->accept());
-  EXPECT_TRUE(encoder->accept());
-  connection.latching = false;
-  EXPECT_TRUE(makeEncoder(EncodingRules()).connect(connection)->accept());
 }
 
 TEST_F(EncoderTest, TheOnlyMessageOfRostopicIsAnEvent) {
@@ -511,19 +348,15 @@ TEST_F(EncoderTest, DefaultsLeaveOutOnlookersAndKeepTheRobot) {
   }
 }
 
-TEST_F(EncoderTest, PatternsMatchWholeNames) {
+TEST_F(EncoderTest, OnlySourcesThatAreIncludedAreHeard) {
   EncodingRules rules;
-  rules.include_topics = {"/sc.*"};
-  rules.exclude_sources = {"/play"};
+  rules.include_sources = {"/pl.*"};
   EXPECT_TRUE(makeEncoder(rules).connect(scan()));
-  rules.include_topics = {"sc"};
-  EXPECT_FALSE(makeEncoder(rules).connect(scan()));
-  rules.include_topics = {};
   rules.include_sources = {"/slam"};
   EXPECT_FALSE(makeEncoder(rules).connect(scan()));
 }
 
-TEST_F(EncoderTest, PatternsAreTypedWithOrWithoutTheFirstSlash) {
+TEST_F(EncoderTest, PatternsMatchWholeNamesTypedWithOrWithoutTheFirstSlash) {
   EncodingRules rules;
   rules.include_topics = {"scan|odom"};
   rules.exclude_sources = {"play"};
@@ -540,12 +373,7 @@ TEST_F(EncoderTest, PatternsAreTypedWithOrWithoutTheFirstSlash) {
 TEST_F(EncoderTest, NamesThePatternThatIsNoRegularExpression) {
   EncodingRules rules;
   rules.exclude_topics = {"/a(b"};
-  try {
-    makeEncoder(rules);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("'/a(b'"), std::string::npos) << error.what();
-  }
+  EXPECT_TRUE(has(problemOf([&] { makeEncoder(rules); }), "'/a(b'"));
 }
 
 TEST_F(EncoderTest, NoPatternAndNoNameTakesForever) {
@@ -571,12 +399,8 @@ TEST_F(EncoderTest, PatternsThatGrowAreRefused) {
   for (const std::string& pattern : {std::string("(((a{1,100}){1,100}){1,100}){1,100}"), nested,
                                      std::string("\xFF\xFE["), std::string("(a)\\1")}) {
     rules.include_topics = {pattern};
-    try {
-      rules.validate();
-      FAIL() << pattern.substr(0, 50);
-    } catch (const std::invalid_argument& error) {
-      EXPECT_LT(std::string(error.what()).size(), 500U);
-    }
+    EXPECT_NE(problemIn(rules), "") << pattern.substr(0, 50);
+    EXPECT_LT(problemIn(rules).size(), 500U);
   }
   rules.include_topics.assign(100000, "/a[0-9]{5}");
   EXPECT_THROW(rules.validate(), std::invalid_argument);

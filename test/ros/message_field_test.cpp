@@ -3,20 +3,27 @@
 #include "self_awareness/ros/message_field.h"
 
 #include <gtest/gtest.h>
+#include <rosgraph_msgs/Log.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <visualization_msgs/Marker.h>
 
 #include <stdexcept>
 #include <string>
+
+#include "../problem.h"
+#include "serialized.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
 std::string errorOf(const std::string& definition) {
-  try {
-    MessageField(definition, "test/Message", "action");
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return problemOf([&] { MessageField(definition, "test/Message", "action"); });
+}
+
+template <typename Message>
+MessageField fieldOf(const std::string& field) {
+  namespace traits = ros::message_traits;
+  return {traits::definition<Message>(), traits::datatype<Message>(), field};
 }
 
 std::string read(const std::string& definition, const std::string& message) {
@@ -24,19 +31,79 @@ std::string read(const std::string& definition, const std::string& message) {
   return field.read(reinterpret_cast<const std::uint8_t*>(message.data()), message.size());
 }
 
+template <typename Message>
+std::string readField(const Message& message, const std::string& field) {
+  const std::vector<std::uint8_t> bytes = serialized(message);
+  return fieldOf<Message>(field).read(bytes.data(), bytes.size());
+}
+
 const std::string kSeven("\7\0\0\0", 4);
 
+TEST(MessageField, ReadsAfterStringsArraysAndNestedMessages) {
+  visualization_msgs::Marker marker;
+  marker.header.frame_id = "map";
+  marker.ns = "people";
+  marker.id = -7;
+  marker.action = visualization_msgs::Marker::DELETE;
+  marker.points.resize(3);
+  marker.text = "Ada";
+  marker.mesh_use_embedded_materials = 1;
+  EXPECT_EQ(readField(marker, "action"), "2");
+  EXPECT_EQ(readField(marker, "id"), "-7");
+  EXPECT_EQ(readField(marker, "ns"), "people");
+  EXPECT_EQ(readField(marker, "header.frame_id"), "map");
+  EXPECT_EQ(readField(marker, "text"), "Ada");
+  EXPECT_EQ(readField(marker, "mesh_use_embedded_materials"), "1");
+
+  sensor_msgs::PointCloud2 cloud;
+  cloud.fields.resize(2);  // an array of messages that hold a string
+  cloud.fields[0].name = "x";
+  cloud.fields[1].name = "intensity";
+  cloud.point_step = 4000000000U;
+  cloud.data.resize(17);
+  cloud.is_dense = 1;
+  EXPECT_EQ(readField(cloud, "point_step"), "4000000000");
+  EXPECT_EQ(readField(cloud, "is_dense"), "1");
+
+  rosgraph_msgs::Log log;
+  log.level = rosgraph_msgs::Log::ERROR;
+  log.name = std::string(200, 'n');
+  EXPECT_EQ(readField(log, "level"), "8");
+  EXPECT_EQ(readField(log, "name"), std::string(64, 'n'));
+}
+
+TEST(MessageField, SaysWhatIsWrongWithAField) {
+  const auto errorOf = [](const std::string& field) {
+    return problemOf([&] { fieldOf<visualization_msgs::Marker>(field); });
+  };
+  EXPECT_EQ(errorOf("verb"), "type field visualization_msgs/Marker: verb: has no field 'verb'");
+  EXPECT_TRUE(has(errorOf("pose"), "is a message itself"));
+  EXPECT_TRUE(has(errorOf("points"), "is an array"));
+  EXPECT_TRUE(has(errorOf("scale.x"), "is a float64"));
+  EXPECT_TRUE(has(errorOf("pose.speed"), "in its geometry_msgs/Pose"));
+}
+
+TEST(MessageField, RefusesAMessageThatIsTooShort) {
+  visualization_msgs::Marker marker;
+  marker.ns = "people";
+  const std::vector<std::uint8_t> buffer = serialized(marker);
+  const auto field = fieldOf<visualization_msgs::Marker>("action");
+  for (std::size_t size = 0; size < 34; ++size) {  // action ends after 12 + 4 + 4 + 4 + 6 + 4 + 4
+    EXPECT_THROW(field.read(buffer.data(), size), std::out_of_range) << size;
+  }
+}
+
 TEST(BadDefinition, ARingOfTypesIsRefused) {
-  EXPECT_NE(errorOf("test/Message self\nint32 action\n").find("in a ring"), std::string::npos);
-  EXPECT_NE(errorOf("A a\nint32 action\n====\nMSG: test/A\nB[] b\n====\nMSG: test/B\nA[3] a\n")
-                .find("in a ring"),
-            std::string::npos);
+  EXPECT_TRUE(has(errorOf("test/Message self\nint32 action\n"), "in a ring"));
+  EXPECT_TRUE(
+      has(errorOf("A a\nint32 action\n====\nMSG: test/A\nB[] b\n====\nMSG: test/B\nA[3] a\n"),
+          "in a ring"));
 }
 
 TEST(BadDefinition, ALengthThatCannotBeIsRefused) {
   for (const char* type :
        {"uint8[99999999999999999999]", "uint8[-1]", "uint8[x]", "uint8[4294967296]", "string[",
-        "uint8[1][2]", "float64[999999999]", "uint8[ 1]"}) {
+        "uint8[1][2]", "float64[999999999]", "uint64[4294967295]", "uint8[ 1]"}) {
     EXPECT_NE(errorOf(std::string(type) + " x\nint32 action\n"), "") << type;
   }
 }
@@ -58,8 +125,8 @@ TEST(BadDefinition, TypesThatDoubleAtEveryLevelAreRefused) {
     definition +=
         "====\nMSG: test/T" + std::to_string(level) + "\n" + next + " x\n" + next + " y\n";
   }
-  EXPECT_NE(errorOf(definition + "====\nMSG: test/T30\nuint8 x\n").find("more than 10000 fields"),
-            std::string::npos);
+  EXPECT_TRUE(
+      has(errorOf(definition + "====\nMSG: test/T30\nuint8 x\n"), "more than 10000 fields"));
 }
 
 TEST(BadDefinition, ATextOfMegabytesIsRefused) {

@@ -10,41 +10,26 @@
 
 #include <boost/filesystem.hpp>
 #include <csignal>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
+
+#include "../in_folder.h"
+#include "../problem.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
 namespace fs = boost::filesystem;
 
-class OutputFileTest : public ::testing::Test {
+class OutputFileTest : public InFolder {
  protected:
-  OutputFileTest() { fs::create_directory(folder_); }
-  ~OutputFileTest() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::set<std::string> names() const {
-    std::set<std::string> names;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-      names.insert(entry.path().filename().string());
-    }
-    return names;
+  /// Writes "new" to a file as a program does that ends well.
+  void writeNew(const std::string& name) const {
+    OutputFile file(path(name));
+    writeFile(file.temporary(), "new");
+    file.complete();
   }
-
-  const fs::path folder_ = fs::temp_directory_path() / fs::unique_path("output_file_%%%%%%%%");
 };
-
-void put(const std::string& path, const std::string& text) {
-  std::ofstream(path) << text;
-}
-
-std::string textOf(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 mode_t modeOf(const std::string& path) {
   struct stat status {};
@@ -53,56 +38,52 @@ mode_t modeOf(const std::string& path) {
 }
 
 TEST_F(OutputFileTest, TakesThePlaceOfTheFileAtTheEndAndNotBefore) {
-  put(path("a.csv"), "old");
+  writeFile(path("a.csv"), "old");
   OutputFile file(path("a.csv"));
   EXPECT_EQ(fs::path(file.temporary()).extension(), ".csv");
-  put(file.temporary(), "new");
-  EXPECT_EQ(textOf(path("a.csv")), "old");
+  writeFile(file.temporary(), "new");
+  EXPECT_EQ(readFile(path("a.csv")), "old");
   file.complete();
-  EXPECT_EQ(textOf(path("a.csv")), "new");
+  EXPECT_EQ(readFile(path("a.csv")), "new");
   EXPECT_EQ(names(), std::set<std::string>{"a.csv"});
 }
 
 TEST_F(OutputFileTest, LeavesNothingBehindWhereItIsNotCompleted) {
-  put(path("a"), "old");
+  writeFile(path("a"), "old");
   {
     OutputFile file(path("a"));
-    put(file.temporary(), "half");
+    writeFile(file.temporary(), "half");
   }
-  EXPECT_EQ(textOf(path("a")), "old");
+  EXPECT_EQ(readFile(path("a")), "old");
   EXPECT_EQ(names(), std::set<std::string>{"a"});
 }
 
 TEST_F(OutputFileTest, TwoMayWriteTheSameFile) {
   OutputFile one(path("a"));
   OutputFile other(path("a"));
-  put(one.temporary(), "one");
-  put(other.temporary(), "other");
+  writeFile(one.temporary(), "one");
+  writeFile(other.temporary(), "other");
   one.complete();
-  EXPECT_EQ(textOf(path("a")), "one");
+  EXPECT_EQ(readFile(path("a")), "one");
   other.complete();
-  EXPECT_EQ(textOf(path("a")), "other");
+  EXPECT_EQ(readFile(path("a")), "other");
 }
 
 TEST_F(OutputFileTest, ALinkStaysOneAndItsTargetIsReplaced) {
   fs::create_directory(path("far"));
-  put(path("far/target"), "old");
+  writeFile(path("far/target"), "old");
   fs::create_symlink("far/target", path("link"));
   fs::create_symlink("link", path("link_to_link"));
-  OutputFile file(path("link_to_link"));
-  put(file.temporary(), "new");
-  file.complete();
+  writeNew("link_to_link");
   EXPECT_TRUE(fs::is_symlink(path("link")) && fs::is_symlink(path("link_to_link")));
-  EXPECT_EQ(textOf(path("far/target")), "new");
+  EXPECT_EQ(readFile(path("far/target")), "new");
 }
 
 TEST_F(OutputFileTest, ALinkMayLeadToAFileThatIsNotThereYet) {
   fs::create_symlink("later", path("link"));
-  OutputFile file(path("link"));
-  put(file.temporary(), "new");
-  file.complete();
+  writeNew("link");
   EXPECT_TRUE(fs::is_symlink(path("link")));
-  EXPECT_EQ(textOf(path("later")), "new");
+  EXPECT_EQ(readFile(path("later")), "new");
 }
 
 TEST_F(OutputFileTest, LinksInACircleAreAnError) {
@@ -112,13 +93,11 @@ TEST_F(OutputFileTest, LinksInACircleAreAnError) {
 }
 
 TEST_F(OutputFileTest, TheOtherNameOfAFileKeepsWhatItHad) {
-  put(path("a"), "old");
+  writeFile(path("a"), "old");
   fs::create_hard_link(path("a"), path("b"));
-  OutputFile file(path("a"));
-  put(file.temporary(), "new");
-  file.complete();
-  EXPECT_EQ(textOf(path("a")), "new");
-  EXPECT_EQ(textOf(path("b")), "old");
+  writeNew("a");
+  EXPECT_EQ(readFile(path("a")), "new");
+  EXPECT_EQ(readFile(path("b")), "old");
 }
 
 TEST_F(OutputFileTest, ADeviceIsWrittenDirectly) {
@@ -147,7 +126,7 @@ TEST_F(OutputFileTest, AFileThatIsOpenAlreadyIsNamedByItself) {
 }
 
 TEST_F(OutputFileTest, AFileKeepsItsPermissions) {
-  put(path("a"), "old");
+  writeFile(path("a"), "old");
   fs::permissions(path("a"), fs::perms(0640));
   OutputFile file(path("a"));
   file.complete();
@@ -161,68 +140,53 @@ TEST_F(OutputFileTest, AFileKeepsItsPermissions) {
 TEST_F(OutputFileTest, WhatCannotBeWrittenIsAnErrorThatNamesIt) {
   fs::create_directory(path("folder"));
   for (const std::string& name : {path("folder"), path("none/a"), path("folder/")}) {
-    try {
-      OutputFile file(name);
-      FAIL() << name;
-    } catch (const FileError& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(name + ": cannot be written (", 0), 0U)
-          << error.what();
-    }
+    EXPECT_TRUE(begins(problemOf<FileError>([&] { OutputFile file(name); }),
+                       name + ": cannot be written ("));
   }
 }
 
 TEST_F(OutputFileTest, ALongNameCanBeWritten) {
-  const std::string name = path(std::string(250, 'a') + ".csv");
-  OutputFile file(name);
-  EXPECT_EQ(fs::path(file.temporary()).extension(), ".csv");
-  put(file.temporary(), "new");
-  file.complete();
-  EXPECT_EQ(textOf(name), "new");
+  const std::string name = std::string(250, 'a') + ".csv";
+  EXPECT_EQ(fs::path(OutputFile(path(name)).temporary()).extension(), ".csv");
+  writeNew(name);
+  EXPECT_EQ(readFile(path(name)), "new");
 }
 
 TEST_F(OutputFileTest, WhatKilledProgramsLeftIsRemovedAndNothingElse) {
   const pid_t killed = ::fork();
   if (killed == 0) {
     OutputFile file(path("a"));
-    put(file.temporary(), "half");
+    writeFile(file.temporary(), "half");
     ::raise(SIGKILL);
   }
   int status = 0;
   ASSERT_EQ(::waitpid(killed, &status, 0), killed);
   ASSERT_TRUE(WIFSIGNALED(status));
   ASSERT_EQ(names().size(), 1U);
-  put(path(".part"), "of somebody else");
+  writeFile(path(".part"), "of somebody else");
   OutputFile in_work(path("b"));
-  put(in_work.temporary(), "b");
+  writeFile(in_work.temporary(), "b");
   { OutputFile next(path("c")); }
   EXPECT_EQ(names(),
             (std::set<std::string>{".part", fs::path(in_work.temporary()).filename().string()}));
   in_work.complete();
-  EXPECT_EQ(textOf(path("b")), "b");
+  EXPECT_EQ(readFile(path("b")), "b");
 }
 
 TEST_F(OutputFileTest, AMissingFolderIsNamedWithTheWayOut) {
   checkFolder("run");  // in this folder
   checkFolder(path("run"));
-  try {
-    checkFolder(path("no such/run"));
-    FAIL();
-  } catch (const FileError& error) {
-    const std::string folder = path("no such");
-    EXPECT_EQ(error.what(),
-              "there is no folder " + folder + ": create it (mkdir -p '" + folder + "')");
-  }
-  put(path("file"), "a");
+  const std::string folder = path("no such");
+  EXPECT_EQ(problemOf<FileError>([&] { checkFolder(folder + "/run"); }),
+            "there is no folder " + folder + ": create it (mkdir -p '" + folder + "')");
+  writeFile(path("file"), "a");
   EXPECT_THROW(checkFolder(path("file/run")), FileError);
 }
 
 TEST_F(OutputFileTest, AFullDiskIsToldWithTheRoomThatThereIs) {
-  put(path("a"), std::string(2000000, 'x'));
-  const std::string problem = writeProblem("/far/b", ENOSPC, path("a"));
-  EXPECT_EQ(
-      problem.rfind("/far/b: cannot be written (No space left on device, there is room for ", 0),
-      0U)
-      << problem;
+  writeFile(path("a"), std::string(2000000, 'x'));
+  EXPECT_TRUE(begins(writeProblem("/far/b", ENOSPC, path("a")),
+                     "/far/b: cannot be written (No space left on device, there is room for "));
   EXPECT_EQ(writeProblem("/far/b", EACCES), "/far/b: cannot be written (Permission denied)");
 }
 

@@ -376,8 +376,8 @@ TEST_F(EvidenceJudgeTest, WhatWasMissedIsNotJudgedAndAllElseIs) {
 }
 
 TEST_F(EvidenceJudgeTest, WhoWasSilentBeforeThisProgramStoodStillIsSilentStill) {
-  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  limits_.tracks[track(kPairs, kB, kA)] = 1;
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kPairs, kB, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   feed(*judge, 5);
   const std::int64_t last = 44 * kPeriod;  // of A, which dies

@@ -69,20 +69,6 @@ def evidence_of(trained: TrainedModel, events: Sequence[Event]) -> np.ndarray:
 
 @examples
 @given(SEVERAL)
-def test_the_papers_counts_are_the_literal_ones(all_events: List[List[Event]]) -> None:
-    trained = trained_on(all_events)
-    reference = Reference([piece for events in all_events for piece in pieces(events)], BIN)
-    ids = ids_of(trained)
-    assert sorted(ids) == reference.types
-    for i in ids:
-        assert trained.event_count(ids[i]) == sum(
-            kind == i for events in all_events for _, kind in events)
-        for j in ids:
-            assert trained.histogram(ids[i], ids[j]) == dict(reference.counts[i, j])
-
-
-@examples
-@given(SEVERAL)
 def test_the_counts_of_evidence_are_the_literal_ones(all_events: List[List[Event]]) -> None:
     check_counts(all_events)
 

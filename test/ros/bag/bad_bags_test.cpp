@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -56,7 +55,7 @@ TEST_F(BadBagsTest, TheBagThatTheOthersAreMadeFromIsGood) {
   EXPECT_EQ(events_.size(), 3U);
 }
 
-TEST_F(BadBagsTest, ABagIsRefusedWhereverItIsCut) {
+TEST_F(BadBagsTest, ABagIsRefusedWhereverItIsCutWithTheRepair) {
   const MemoryLimit limit;
   const std::string bag = threeChunks();
   const std::string log = eventLog();
@@ -66,7 +65,8 @@ TEST_F(BadBagsTest, ABagIsRefusedWhereverItIsCut) {
         const auto cut = static_cast<std::ptrdiff_t>(boundary) + beside;
         if (cut < static_cast<std::ptrdiff_t>(whole->size())) {
           const std::string part = whole->substr(0, static_cast<std::size_t>(cut));
-          EXPECT_NE(whole == &bag ? errorOf(part) : errorOfLog(part), "") << cut;
+          EXPECT_TRUE(has(whole == &bag ? errorOf(part) : errorOfLog(part), "rosbag reindex '"))
+              << cut;
         }
       }
     }
@@ -150,9 +150,7 @@ TEST_F(BadBagsTest, SwappedAndRepeatedBlocksAreRefused) {
 }
 
 TEST_F(BadBagsTest, AChunkThatTheIndexHasTwiceOrNotAtAllIsRefused) {
-  const std::string data = parts_.chunk();
-  const std::string chunk =
-      parts_.chunkRecord(data, static_cast<std::uint32_t>(data.size())) + parts_.indexRecord();
+  const std::string chunk = parts_.indexedChunk();
   const std::uint64_t first = Parts::fileHeader(0, 0, 0).size();
   const auto bag = [&](const std::vector<std::uint64_t>& positions) {
     std::string infos;
@@ -196,14 +194,10 @@ TEST_F(BadBagsTest, AListOfChunksAsLongAsAHoleInTheFileIsRefused) {
   std::string bytes = Parts::fileHeader(4200, 1, 0xFFFFFFFF);
   bytes.resize(4200);
   bytes += parts_.connectionRecord();
-  bag_bytes::writeFile(path("hole.bag"), bytes);
+  writeFile(path("hole.bag"), bytes);
   fs::resize_file(path("hole.bag"), std::uintmax_t{3} << 30);  // takes no room on the disk
-  try {
-    BagReader bag(path("hole.bag"));
-    FAIL();
-  } catch (const BagError& error) {
-    EXPECT_FALSE(has(error.what(), "memory")) << error.what();
-  }
+  const std::string error = problemOf<BagError>([this] { BagReader(path("hole.bag")); });
+  EXPECT_TRUE(!error.empty() && !has(error, "memory")) << error;
 }
 
 TEST_F(BadBagsTest, EveryTimeThatABagCanHoldIsReadOrRefused) {
@@ -243,16 +237,6 @@ TEST_F(BadBagsTest, TopicsThatNoNodeCanSubscribeToAreLeftOutAndNamed) {
   parts_.callerid = "/" + std::string(30000, 'n');
   EXPECT_EQ(errorOf(parts_.bag()), "");
   EXPECT_TRUE(events_.empty());
-}
-
-TEST_F(BadBagsTest, ADefinitionThatWouldTakeForeverIsRefused) {
-  const MemoryLimit limit;
-  for (const char* before :
-       {"std_msgs/String self\n", "uint8[99999999999999999999] x\n", "string[4294967295] x\n",
-        "uint64[4294967295] x\n", "uint8[-1] x\n"}) {
-    parts_.definition = std::string(before) + "string data\n";
-    EXPECT_NE(errorOf(parts_.bag()), "") << before;
-  }
 }
 
 TEST_F(BadBagsTest, AFormerBagIsCheckedBeforeRosbagReadsIt) {

@@ -15,7 +15,6 @@
 namespace self_awareness::ros1 {
 namespace {
 
-using bag_bytes::bytesOf;
 using bag_bytes::Parts;
 
 /// What rosbag makes of messages: compressed, in chunks of a few.
@@ -31,7 +30,7 @@ class PackedBagsTest : public BadBagsTest {
       bag.write("/a", ros::Time(100 + k, 0), message);
     }
     bag.close();
-    return bag_bytes::readFile(path("packed.bag"));
+    return readFile(path("packed.bag"));
   }
   /// Where the data of the chunks begin and end.
   static std::vector<std::pair<std::size_t, std::size_t>> chunksOf(const std::string& bag) {
@@ -107,29 +106,7 @@ class ConnectionsTest : public BadBagsTest {
  protected:
   std::string bag(const Parts& in_chunk, const std::vector<Parts>& at_end) {
     rules_.type_fields.clear();
-    const std::string connection = in_chunk.connectionRecord();
-    const std::string data = connection + parts_.chunk();
-    std::string entries;
-    auto offset = static_cast<std::uint32_t>(connection.size());
-    for (const auto& [second, content] : parts_.messages) {
-      entries += parts_.time(second) + bytesOf(offset);
-      offset += static_cast<std::uint32_t>(parts_.message(second, content).size());
-    }
-    const std::string chunk =
-        parts_.chunkRecord(data, static_cast<std::uint32_t>(data.size())) +
-        bag_bytes::record({{"op", "\x04"},
-                           {"ver", bytesOf(std::uint32_t{1})},
-                           {"conn", bytesOf(std::uint32_t{0})},
-                           {"count", bytesOf(static_cast<std::uint32_t>(parts_.messages.size()))}},
-                          entries);
-    const std::uint64_t first = Parts::fileHeader(0, 0, 0).size();
-    std::string bytes =
-        Parts::fileHeader(first + chunk.size(), static_cast<std::uint32_t>(at_end.size()), 1) +
-        chunk;
-    for (const Parts& each : at_end) {
-      bytes += each.connectionRecord();
-    }
-    return bytes + Parts::chunkInfo(first, static_cast<std::uint32_t>(parts_.messages.size()));
+    return parts_.bag({parts_.indexedChunk(in_chunk.connectionRecord())}, at_end);
   }
 };
 

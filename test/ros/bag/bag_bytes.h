@@ -2,25 +2,19 @@
 
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "../../files.h"
 
 namespace self_awareness::ros1::bag_bytes {
 
 /// Bags of format 2.0, byte by byte, so that a test can make what no program writes.
 
-inline std::string readFile(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-inline void writeFile(const std::string& path, const std::string& bytes) {
-  std::ofstream(path, std::ios::binary) << bytes;
-}
+using self_awareness::readFile;
+using self_awareness::writeFile;
 
 template <typename Number>
 std::string bytesOf(Number number) {
@@ -87,12 +81,12 @@ struct Parts {
     return record({{"op", "\x05"}, {"compression", compression}, {"size", bytesOf(unpacked)}},
                   data);
   }
-  std::string indexRecord() const {
+  /// @param offset of the first message in its chunk
+  std::string indexRecord(std::size_t offset = 0) const {
     std::string entries;
-    std::uint32_t offset = 0;
     for (const auto& [second, content] : messages) {
-      entries += time(second) + bytesOf(offset);
-      offset += static_cast<std::uint32_t>(message(second, content).size());
+      entries += time(second) + bytesOf(static_cast<std::uint32_t>(offset));
+      offset += message(second, content).size();
     }
     return record({{"op", "\x04"},
                    {"ver", bytesOf(std::uint32_t{1})},
@@ -126,23 +120,33 @@ struct Parts {
                                       {"chunk_count", bytesOf(chunks)}},
                                      std::string(4027, ' '));
   }
+  /// A chunk and its index.
+  /// @param before the messages in the chunk
+  std::string indexedChunk(const std::string& before = "") const {
+    const std::string data = before + chunk();
+    return chunkRecord(data, static_cast<std::uint32_t>(data.size())) + indexRecord(before.size());
+  }
   /// @param chunks each with its index, one after the other
-  std::string bag(const std::vector<std::string>& chunks) const {
+  /// @param connections at the end
+  std::string bag(const std::vector<std::string>& chunks,
+                  const std::vector<Parts>& connections) const {
     std::uint64_t position = fileHeader(0, 0, 0).size();
     std::string body;
-    std::string infos;
+    std::string end;
+    for (const Parts& each : connections) {
+      end += each.connectionRecord();
+    }
     for (const std::string& chunk : chunks) {
-      infos += chunkInfo(position, static_cast<std::uint32_t>(messages.size()));
+      end += chunkInfo(position, static_cast<std::uint32_t>(messages.size()));
       body += chunk;
       position += chunk.size();
     }
-    return fileHeader(position, 1, static_cast<std::uint32_t>(chunks.size())) + body +
-           connectionRecord() + infos;
+    return fileHeader(position, static_cast<std::uint32_t>(connections.size()),
+                      static_cast<std::uint32_t>(chunks.size())) +
+           body + end;
   }
-  std::string bag() const {
-    const std::string data = chunk();
-    return bag({chunkRecord(data, static_cast<std::uint32_t>(data.size())) + indexRecord()});
-  }
+  std::string bag(const std::vector<std::string>& chunks) const { return bag(chunks, {*this}); }
+  std::string bag() const { return bag({indexedChunk()}); }
 };
 
 /// Three messages /a, one a second, in format 1.2, which rosbag no longer writes.

@@ -4,59 +4,42 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include <boost/filesystem.hpp>
 #include <cstdint>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "self_awareness/EventLogGraph.h"
+#include "../../in_folder.h"
+#include "../../problem.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
-#include "self_awareness/ros/encoding_message.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-namespace fs = boost::filesystem;
-
 constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 constexpr std::int64_t kBegin = 1790000000 * kSecond;
 
-std::vector<std::pair<std::int64_t, std::string>> eventsOf(std::int64_t begin, int number) {
-  std::vector<std::pair<std::int64_t, std::string>> events;
+using Events = std::vector<std::pair<std::int64_t, std::string>>;  // stamp and node
+
+Events eventsOf(std::int64_t begin, int number) {
+  Events events;
   for (int k = 0; k < number; ++k) {
     events.emplace_back(begin + k * kSecond / 7, "/node" + std::to_string(k % 3));
   }
   return events;
 }
 
-class EventLogTest : public testing::Test {
+class EventLogTest : public InFolder {
  protected:
-  EventLogTest()
-      : folder_(fs::temp_directory_path() / fs::unique_path("self_awareness-%%%%%%%%")) {
-    fs::create_directory(folder_);
-  }
-  ~EventLogTest() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
   /// Writes a recording: half a second of silence, a node that other ones hear, and the events.
   void write(EventLogWriter& log, std::int64_t begin, std::int64_t robot_start,
-             const std::vector<std::pair<std::int64_t, std::string>>& events) {
-    self_awareness::EventLogStart start;
-    start.encoding = toMessage(rules_);
-    start.begin.fromNSec(static_cast<std::uint64_t>(begin - kSecond / 2));
-    start.robot_start.fromNSec(static_cast<std::uint64_t>(robot_start));
-    start.fingerprint = static_cast<std::uint64_t>(begin) % 1000;
-    start.has_sources = true;
-    log.start(start);
+             const Events& events) {
+    log.start(startOfRecording(rules_, begin - kSecond / 2, robot_start));
     Graph graph;
     graph.topics["/topic"] = {"std_msgs/String", {"/node0"}, {"/node1"}};
     graph.hosts = {{"/node0", "base"}, {"/node1", "base"}};
@@ -81,9 +64,8 @@ class EventLogTest : public testing::Test {
     return path(name);
   }
 
-  std::vector<std::pair<std::int64_t, std::string>> read(const EventLogReader& log,
-                                                         const TimeRange& range = {}) const {
-    std::vector<std::pair<std::int64_t, std::string>> events;
+  Events read(const EventLogReader& log, const TimeRange& range = {}) const {
+    Events events;
     core::Vocabulary vocabulary;
     log.read(
         rules_, [&](const core::EventType& type) { return vocabulary.intern(type); }, range,
@@ -109,25 +91,13 @@ class EventLogTest : public testing::Test {
 
   /// What is wrong with a log, as its user is told.
   std::string errorOf(const std::string& log, std::size_t recording = 0) const {
-    try {
-      read(EventLogReader(log, recording));
-    } catch (const BagError& error) {
-      EXPECT_EQ(std::string(error.what()).find(log), 0U) << "names the file: " << error.what();
-      return error.what();
-    }
-    return "";
+    const std::string error = problemOf<BagError>([&] { read(EventLogReader(log, recording)); });
+    EXPECT_TRUE(error.empty() || begins(error, log)) << "names the file";
+    return error;
   }
 
   EncodingRules rules_ = EncodingRules::defaults();
-
- private:
-  fs::path folder_;
 };
-
-std::string bytesOf(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
 
 TEST_F(EventLogTest, EventsComeOutAsTheyWentIn) {
   const std::string log = writeLog("log.bag");
@@ -195,29 +165,13 @@ TEST_F(EventLogTest, AMachineThatWaitedForLongerThanTimePassedIsDamage) {
        {core::Waiting{kBegin, kBegin + 5, 6}, core::Waiting{kBegin, kBegin - 1, 0},
         core::Waiting{-1, kBegin, 1}, core::Waiting{kBegin, kBegin + 5, -1}}) {
     EventLogWriter log(path("wrong.bag"));
-    self_awareness::EventLogStart start;
-    start.encoding = toMessage(rules_);
-    start.begin.fromNSec(static_cast<std::uint64_t>(kBegin));
-    log.start(start);
+    log.start(startOfRecording(rules_, kBegin));
     EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
     packer.add(wrong);
     packer.flush(kBegin + kSecond);
     log.close();
     EXPECT_THROW(waiting(EventLogReader(path("wrong.bag"), 0)), BagError);
   }
-}
-
-TEST_F(EventLogTest, IsABagThatRosbagReads) {
-  const rosbag::Bag bag(writeLog("log.bag"), rosbag::bagmode::Read);
-  rosbag::View view(bag);
-  std::size_t events = 0;
-  for (const rosbag::MessageInstance& message : view) {
-    if (const auto part = message.instantiate<self_awareness::EventLog>()) {
-      events += part->events;
-    }
-  }
-  EXPECT_EQ(events, 500U);
-  EXPECT_EQ(recordingsInEventLog(bag.getFileName()), 1U);
 }
 
 TEST_F(EventLogTest, ARangeIsCountedFromTheStart) {
@@ -237,11 +191,11 @@ TEST_F(EventLogTest, HoldsSeveralRecordingsInTheirOrder) {
   EXPECT_EQ(recordingsInEventLog(log.path()), 2U) << "though the clock was set back";
   EXPECT_EQ(read(EventLogReader(log.path(), 0)), eventsOf(kBegin, 30));
   EXPECT_EQ(read(EventLogReader(log.path(), 1)), eventsOf(kBegin - 3600 * kSecond, 20));
-  EXPECT_NE(errorOf(log.path(), 2).find("holds 2 recordings"), std::string::npos);
+  EXPECT_TRUE(has(errorOf(log.path(), 2), "holds 2 recordings"));
 }
 
 TEST_F(EventLogTest, EventsThatAreOutOfOrderStayInTheOrderInWhichTheyWereHeard) {
-  const std::vector<std::pair<std::int64_t, std::string>> events{
+  const Events events{
       {kBegin, "/a"}, {kBegin + 100, "/b"}, {kBegin + 50, "/a"}, {kBegin + 120, "/c"}};
   EventLogWriter log(path("log.bag"));
   write(log, kBegin, 0, events);
@@ -276,7 +230,7 @@ TEST_F(EventLogTest, APartIsBounded) {
 TEST_F(EventLogTest, AnotherEncodingIsAnError) {
   const std::string log = writeLog("log.bag");
   rules_.exclude_topics.emplace_back("/other");
-  EXPECT_NE(errorOf(log).find("another encoding"), std::string::npos);
+  EXPECT_TRUE(has(errorOf(log), "another encoding"));
 }
 
 TEST_F(EventLogTest, NamesAreWholeAndRenamedByWhatTheLogWasNotYet) {
@@ -299,7 +253,7 @@ TEST_F(EventLogTest, NamesAreWholeAndRenamedByWhatTheLogWasNotYet) {
             (std::set<core::EventType>{{"/node", "/topic", "std_msgs/String"},
                                        {"/other", "/topic", "std_msgs/String"}}));
   rules_.renames.erase(rules_.renames.begin());
-  EXPECT_NE(errorOf(path("log.bag")).find("another encoding"), std::string::npos);
+  EXPECT_TRUE(has(errorOf(path("log.bag")), "another encoding"));
 }
 
 TEST_F(EventLogTest, AnOrdinaryBagIsNoEventLog) {
@@ -309,14 +263,14 @@ TEST_F(EventLogTest, AnOrdinaryBagIsNoEventLog) {
   bag.close();
   EXPECT_FALSE(recordingsInEventLog(bag.getFileName())) << "somebody recorded a log's topic";
   EXPECT_FALSE(recordingsInEventLog(path("none.bag")));
-  EXPECT_NE(errorOf(path("a.bag")).find("no event log"), std::string::npos);
+  EXPECT_TRUE(has(errorOf(path("a.bag")), "no event log"));
 }
 
 TEST_F(EventLogTest, ALogWithoutAStartIsAnError) {
   rosbag::Bag bag(path("a.bag"), rosbag::bagmode::Write);
   bag.write(kEventLogTopic, ros::Time(1, 0), self_awareness::EventLog());
   bag.close();
-  EXPECT_NE(errorOf(path("a.bag")).find("no start"), std::string::npos);
+  EXPECT_TRUE(has(errorOf(path("a.bag")), "no start"));
 }
 
 TEST_F(EventLogTest, AMissingPartIsAnError) {
@@ -333,15 +287,7 @@ TEST_F(EventLogTest, AMissingPartIsAnError) {
     }
     ASSERT_GT(parts, 2U);
   }
-  EXPECT_NE(errorOf(path("cut.bag")).find("a part is missing"), std::string::npos);
-}
-
-TEST_F(EventLogTest, ACutOffLogSaysHowToMendIt) {
-  const std::string bytes = bytesOf(writeLog("log.bag"));
-  for (std::size_t size = 0; size < bytes.size(); size += 97) {
-    std::ofstream(path("cut.bag"), std::ios::binary) << bytes.substr(0, size);
-    EXPECT_NE(errorOf(path("cut.bag")), "") << size << " bytes";
-  }
+  EXPECT_TRUE(has(errorOf(path("cut.bag")), "a part is missing"));
 }
 
 TEST_F(EventLogTest, ALogThatWasNotClosedKeepsAllThatWasWritten) {
@@ -349,62 +295,45 @@ TEST_F(EventLogTest, ALogThatWasNotClosedKeepsAllThatWasWritten) {
     EventLogWriter log(path("log.bag"));
     write(log, kBegin, 3 * kSecond, eventsOf(kBegin, 500));
   }
-  EXPECT_NE(errorOf(path("log.bag")).find("rosbag reindex"), std::string::npos);
+  EXPECT_TRUE(has(errorOf(path("log.bag")), "has no index"));
 }
 
 TEST_F(EventLogTest, AFullDiskIsAnErrorAndNoEndOfTheProgram) {
-  if (!fs::exists("/dev/full")) {
-    GTEST_SKIP() << "there is no /dev/full";
-  }
   EXPECT_THROW(EventLogWriter("/dev/full"), BagError);
   EXPECT_THROW(EventLogWriter(path("none/log.bag")), BagError);
 }
 
 TEST_F(EventLogTest, NamesThatNoTerminalShouldGetAreRefused) {
-  using Change = std::function<void(self_awareness::EventLogStart&, self_awareness::EventType&,
-                                    self_awareness::TopicNodes&)>;
-  const auto error = [this](const Change& change) -> std::string {
-    self_awareness::EventLogStart start = startOfRecording(rules_, kBegin);
-    self_awareness::EventType type;
-    type.source = "/node";
-    type.scope = "/topic";
-    type.type = "std_msgs/String";
-    self_awareness::EventLogGraph graph;
-    graph.topics.resize(1);
-    graph.topics[0].topic = "/topic";
-    graph.topics[0].publishers = {"/node"};
-    change(start, type, graph.topics[0]);
-    EventLogWriter log(path("named"));
-    log.start(start);
-    EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
-    core::Vocabulary vocabulary({{type.source, type.scope, type.type}});
-    packer.add({kBegin, 0}, vocabulary);
-    packer.flush(kBegin + kSecond);
-    Graph written;
-    written.topics[graph.topics[0].topic].publishers = {graph.topics[0].publishers[0]};
-    log.writeGraph(written, kBegin);
-    log.close();
-    try {
-      read(EventLogReader(path("named"), 0));
-    } catch (const BagError& problem) {
-      return problem.what();
-    }
-    return "";
+  struct Log {
+    self_awareness::EventLogStart start;
+    core::EventType type{"/node", "/topic", "std_msgs/String"};
+    std::string publisher = "/node";
   };
-  EXPECT_EQ(error([](auto& /*start*/, auto& /*type*/, auto& /*nodes*/) {}), "");
+  using Change = std::function<void(Log&)>;
+  const auto error = [this](const Change& change) {
+    Log named{startOfRecording(rules_, kBegin)};
+    change(named);
+    EventLogWriter log(path("named"));
+    log.start(named.start);
+    EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
+    packer.add({kBegin, 0}, core::Vocabulary({named.type}));
+    packer.flush(kBegin + kSecond);
+    Graph graph;
+    graph.topics["/topic"].publishers = {named.publisher};
+    log.writeGraph(graph, kBegin);
+    log.close();
+    return errorOf(path("named"));
+  };
+  EXPECT_EQ(error([](Log& /*log*/) {}), "");
   const std::string escape = "a\x1B[2J";
-  for (const Change& change : std::vector<Change>{
-           [&](auto&start, auto&, auto&) { start.bag = escape; },
-           [&](auto&start, auto&, auto&) { start.encoding.exclude_topics = {escape}; },
-           [&](auto&, auto&type, auto&) { type.source = escape; },
-           [&](auto&, auto&type, auto&) {
-             type.type =
-                 "a\xE2\x80\xAE"
-                 "b";
-           },
-           [&](auto&, auto&, auto&nodes) { nodes.publishers = {escape}; }}) {
+  for (const Change& change :
+       std::vector<Change>{[&](Log& log) { log.start.bag = escape; },
+                           [&](Log& log) { log.start.encoding.exclude_topics = {escape}; },
+                           [&](Log& log) { log.type.source = escape; },
+                           [&](Log& log) { log.type.type = std::string("a\xE2\x80\xAE") + "b"; },
+                           [&](Log& log) { log.publisher = escape; }}) {
     const std::string told = error(change);
-    EXPECT_EQ(told.rfind(path("named") + ": ", 0), 0U) << told;
+    EXPECT_NE(told, "");
     EXPECT_EQ(told.find('\x1B'), std::string::npos);
   }
 }

@@ -8,13 +8,14 @@
 #include <std_msgs/Header.h>
 
 #include <boost/filesystem.hpp>
-#include <boost/make_shared.hpp>
-#include <fstream>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "../../in_folder.h"
+#include "../../problem.h"
+#include "../serialized.h"
 #include "ros/bag/bag_span.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/bag_reader.h"
@@ -24,39 +25,21 @@ namespace {
 
 namespace fs = boost::filesystem;
 
-boost::shared_ptr<ros::M_string> header(const std::string& callerid, bool latching = false) {
-  auto fields = boost::make_shared<ros::M_string>();
-  (*fields)["callerid"] = callerid;
-  (*fields)["latching"] = latching ? "1" : "0";
-  (*fields)["type"] = ros::message_traits::datatype<std_msgs::Header>();
-  (*fields)["md5sum"] = ros::message_traits::md5sum<std_msgs::Header>();
-  (*fields)["message_definition"] = ros::message_traits::definition<std_msgs::Header>();
-  return fields;
-}
-
 using Said = std::tuple<std::int64_t, core::EventType, std::uint32_t>;
 
-class RecordingFilesTest : public testing::Test {
+class RecordingFilesTest : public InFolder {
  protected:
   /// What the recorder repeats at the beginning of a file, and how.
   enum class Repeated { kNothing, kWithoutSender, kWithSender };
-
-  RecordingFilesTest()
-      : folder_(fs::temp_directory_path() / fs::unique_path("self_awareness-%%%%%%%%")) {
-    fs::create_directory(folder_);
-  }
-  ~RecordingFilesTest() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
   /// Writes what came from `begin` to `end`, in tenths of a second: a message each, and a map that
   /// is latched, at 0.1 s and at 7 s. /slow connects first in every other file.
   std::string write(const std::string& name, int begin, int end,
                     Repeated repeated = Repeated::kNothing) {
     rosbag::Bag bag(path(name), rosbag::bagmode::Write);
-    const auto fast = header("/fast");
-    const auto slow = header("/slow");
-    const auto latched = header("/maps", true);
+    const auto fast = headerOf<std_msgs::Header>("/fast");
+    const auto slow = headerOf<std_msgs::Header>("/slow");
+    const auto latched = headerOf<std_msgs::Header>("/maps", true);
     if (repeated == Repeated::kWithSender) {
       bag.write("/map", stamp(begin), map(begin), latched);
     } else if (repeated == Repeated::kWithoutSender) {
@@ -99,15 +82,8 @@ class RecordingFilesTest : public testing::Test {
   }
 
   static std::string errorOf(const std::string& bag) {
-    try {
-      spanOfBag(bag);
-    } catch (const BagError& error) {
-      return error.what();
-    }
-    return "";
+    return problemOf<BagError>([&] { spanOfBag(bag); });
   }
-
-  fs::path folder_;
 };
 
 TEST_F(RecordingFilesTest, FilesAreReadAsTheOneBagThatTheyWere) {
@@ -149,8 +125,9 @@ TEST_F(RecordingFilesTest, ANewMessageAtASplitIsOne) {
 TEST_F(RecordingFilesTest, MessagesThatOvertakeEachOtherAtASplitAreInOrder) {
   for (const int begin : {0, 2}) {
     rosbag::Bag bag(path("run_" + std::to_string(begin / 2) + ".bag"), rosbag::bagmode::Write);
-    bag.write("/a", ros::Time(100, 1000000 * begin), map(0), header("/fast"));
-    bag.write("/a", ros::Time(100, 1000000 * (3 + begin)), map(0), header("/fast"));
+    bag.write("/a", ros::Time(100, 1000000 * begin), map(0), headerOf<std_msgs::Header>("/fast"));
+    bag.write("/a", ros::Time(100, 1000000 * (3 + begin)), map(0),
+              headerOf<std_msgs::Header>("/fast"));
     bag.close();
   }
   std::vector<std::int64_t> milliseconds;
@@ -163,12 +140,7 @@ TEST_F(RecordingFilesTest, MessagesThatOvertakeEachOtherAtASplitAreInOrder) {
 TEST_F(RecordingFilesTest, AFileThatCannotBeReadIsNamed) {
   const std::vector<std::string> files{write("run_0.bag", 0, 40), write("run_1.bag", 40, 80)};
   fs::resize_file(files[1], fs::file_size(files[1]) / 2);
-  try {
-    BagReader reader(files);
-    FAIL();
-  } catch (const BagError& error) {
-    EXPECT_EQ(std::string(error.what()).find(files[1] + ": "), 0U) << error.what();
-  }
+  EXPECT_TRUE(begins(problemOf<BagError>([&] { BagReader reader(files); }), files[1] + ": "));
 }
 
 TEST_F(RecordingFilesTest, ASpanIsKnownWithoutTheMessages) {
@@ -181,7 +153,7 @@ TEST_F(RecordingFilesTest, ASpanIsKnownWithoutTheMessages) {
   EXPECT_EQ(spanOfBag(path("none.bag")).messages, 0U);
   for (const auto& part : {3, 2}) {
     fs::resize_file(path("a.bag"), fs::file_size(path("a.bag")) * (part - 1) / part);
-    EXPECT_NE(errorOf(path("a.bag")).find("rosbag reindex"), std::string::npos);
+    EXPECT_TRUE(has(errorOf(path("a.bag")), "rosbag reindex"));
   }
 }
 
@@ -201,9 +173,8 @@ TEST_F(RecordingFilesTest, FilesOfOtherFormatsAreNamedByTheirBeginning) {
       {"", "the file is empty"},
       {"what is this?", "of no format that is known here"}};
   for (const auto& [beginning, said] : formats) {
-    std::ofstream(path("x.bag"), std::ios::binary) << beginning;
-    EXPECT_EQ(errorOf(path("x.bag")).find(path("x.bag") + ": not a bag of ROS 1: " + said), 0U)
-        << errorOf(path("x.bag"));
+    writeFile(path("x.bag"), beginning);
+    EXPECT_TRUE(begins(errorOf(path("x.bag")), path("x.bag") + ": not a bag of ROS 1: " + said));
   }
 }
 

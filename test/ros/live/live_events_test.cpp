@@ -8,7 +8,7 @@
 #include <ros/xmlrpc_manager.h>
 #include <std_msgs/String.h>
 
-#include <algorithm>
+#include <array>
 #include <atomic>
 #include <boost/make_shared.hpp>
 #include <fstream>
@@ -21,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "../serialized.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/subscriptions.h"
@@ -72,15 +73,15 @@ class LiveEventsTest : public testing::Test {
     EncodingRules rules;
     rules.type_fields = type_fields;
     rules.mode = mode;
-    live_events_->setEncoder(
-        std::make_shared<Encoder>(
-            rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
-        {}, window);
+    live_events_->setEncoder(encoderOf(rules), {}, window);
+  }
+  std::shared_ptr<const Encoder> encoderOf(const EncodingRules& rules) {
+    return std::make_shared<const Encoder>(
+        rules, [this](const core::EventType& type) { return vocabulary_.intern(type); });
   }
   /// Encodes as a monitor does that keeps back for so long [ns] what may be a sibling's.
   void encodeHolding(std::int64_t hold, OwnOutput::Known known = {}) {
-    const auto encoder = std::make_shared<Encoder>(
-        EncodingRules(), [this](const core::EventType& type) { return vocabulary_.intern(type); });
+    const auto encoder = encoderOf({});
     live_events_->setEncoder(encoder, OwnOutput("/watch", std::move(known), encoder), kWindow,
                              hold);
   }
@@ -118,12 +119,6 @@ class LiveEventsTest : public testing::Test {
     return types_;
   }
 
-  /// A connection to a node.
-  static boost::shared_ptr<ros::M_string> connection(const std::string& node) {
-    return boost::make_shared<ros::M_string>(ros::M_string{
-        {"callerid", node}, {"type", "std_msgs/String"}, {"message_definition", "string data\n"}});
-  }
-
   core::Senders senders_;
   using Types = std::vector<std::string>;
   ros::NodeHandle node_handle_;
@@ -146,14 +141,6 @@ TEST_F(LiveEventsTest, DropsAndCountsWhatDoesNotFit) {
   publish(publisher, message(""));
   EXPECT_EQ(delivered().size(), 1U);
   EXPECT_EQ(live_events_->dropped(), 7U);
-}
-
-TEST_F(LiveEventsTest, ReadsAMessageFromTheFirstOnWhereTheEncodingNeedsIt) {
-  encode({{"std_msgs/String", "data"}});
-  const ros::Publisher publisher = advertise("/a");
-  publish(publisher, message("on"));
-  publish(publisher, message("off"));
-  EXPECT_EQ(delivered(), (Types{"std_msgs/String[data=on]", "std_msgs/String[data=off]"}));
 }
 
 TEST_F(LiveEventsTest, WhatWasLatchedTellsTheModeThatLasts) {
@@ -259,10 +246,7 @@ TEST_F(LiveEventsTest, TwoOfOneProcessDoNotDisturbEachOther) {
   Subscriptions others_subscriptions(other.arrivals());
   EncodingRules rules;
   rules.type_fields = {{"std_msgs/String", "data"}};
-  other.setEncoder(
-      std::make_shared<Encoder>(
-          rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
-      {}, kWindow);
+  other.setEncoder(encoderOf(rules), {}, kWindow);
   const ros::Publisher publisher = advertise("/a");
   others_subscriptions.listen(ownTopic("/a"));
   for (std::uint64_t i = 1; i <= 2; ++i) {
@@ -407,22 +391,12 @@ TEST_F(LiveEventsTest, WakesBeforeItsQueueIsFull) {
 TEST_F(LiveEventsTest, TwoConnectionsOfOneNameThatSpeakInTurnAreTwoSenders) {
   const auto topic = std::make_shared<const std::string>("/scan");
   const auto any = boost::make_shared<const topic_tools::ShapeShifter>();
-  const auto one = connection("/lidar");
-  const auto other = connection("/lidar");
   auto now = static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
-  const auto hear = [&](const boost::shared_ptr<ros::M_string>& header) {
+  const std::array<boost::shared_ptr<ros::M_string>, 2> connections{
+      headerOf<std_msgs::String>("/lidar"), headerOf<std_msgs::String>("/lidar")};
+  for (std::size_t k = 0; k < 10; ++k) {
     now += kWindow;
-    live_events_->arrivals().add({topic, header, now, now, any});
-  };
-  for (int k = 0; k < 10; ++k) {
-    hear(one);
-  }
-  hear(other);
-  delivered();
-  EXPECT_TRUE(senders_.doubled.empty()) << "it was started again";
-  for (int k = 0; k < 5; ++k) {
-    hear(one);
-    hear(other);
+    live_events_->arrivals().add({topic, connections[k % 2], now, now, any});
   }
   delivered();
   EXPECT_EQ(senders_.doubled, std::set<core::SourceGraph::Publication>({{"/lidar", "/scan"}}));

@@ -4,7 +4,6 @@
 
 #include <set>
 #include <string>
-#include <vector>
 
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
 namespace self_awareness::ros1 {
 namespace {

@@ -2,19 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <string>
 
-#include "kept_file_case.h"
+#include "one_message_case.h"
 #include "ros/verdict/standing_alarm.h"
 #include "self_awareness/SelfAwareness.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-class IncidentsFileTest : public KeptFileTest {
+class IncidentsFileTest : public OneMessageTest<self_awareness::Incidents> {
  protected:
-  IncidentsFileTest() {
+  IncidentsFileTest()
+      : OneMessageTest(writeIncidents, readIncidents, "the incidents in it are damaged") {
     core::Incident incident;
     incident.id = incident.main = 1600000000000000000;
     incident.last = 1600000001000000000;
@@ -32,21 +32,10 @@ class IncidentsFileTest : public KeptFileTest {
     incident.over = incident.unknown = true;
     incident.alarms = 7;
     incident.near_misses = 3;
-    incidents_.incidents = {toMessage(incident)};
-    incidents_.incidents[0].recording = "/files/alarm.bag";
-    incidents_.incidents[0].model = "/files/robot.model";
+    content_.incidents = {toMessage(incident)};
+    content_.incidents[0].recording = "/files/alarm.bag";
+    content_.incidents[0].model = "/files/robot.model";
   }
-  void write() override { writeIncidents(incidents_, path_); }
-  void read() override { readIncidents(path_); }
-  void expectRefused(const std::string& why,
-                     const std::function<void(self_awareness::Incidents&)>& change) {
-    const self_awareness::Incidents before = incidents_;
-    change(incidents_);
-    EXPECT_EQ(errorOf(written()), path_ + ": the incidents in it are damaged (" + why + ")");
-    incidents_ = before;
-  }
-
-  self_awareness::Incidents incidents_;
 };
 
 TEST_F(IncidentsFileTest, IsReadAsItWasWritten) {
@@ -54,18 +43,14 @@ TEST_F(IncidentsFileTest, IsReadAsItWasWritten) {
   written();
   const auto read = readIncidents(path_);
   ASSERT_TRUE(read);
-  EXPECT_EQ(*read, incidents_);
+  EXPECT_EQ(*read, content_);
 }
 
 TEST_F(IncidentsFileTest, TheCoreHasOfItWhatTheMessageSays) {
-  self_awareness::Incident message = incidents_.incidents[0];
+  self_awareness::Incident message = content_.incidents[0];
   message.recording.clear();
   message.model.clear();
   EXPECT_EQ(toMessage(fromMessage(message)), message);
-}
-
-TEST_F(IncidentsFileTest, ADamagedFileIsRefusedByName) {
-  expectNoBeliefInDamage();
 }
 
 TEST_F(IncidentsFileTest, WhatCannotBeIsRefused) {
@@ -81,7 +66,7 @@ TEST_F(IncidentsFileTest, WhatCannotBeIsRefused) {
   });
   expectRefused("the name of a component is too long",
                 [](Incidents& of) { of.incidents[0].others = {std::string(1001, 'a')}; });
-  incidents_.incidents[0].component = "/\x1b[2J";
+  content_.incidents[0].component = "/\x1b[2J";
   EXPECT_NE(errorOf(written()), "") << "its texts are printable";
 }
 

@@ -2,22 +2,22 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
 #include <string>
 
-#include "kept_file_case.h"
+#include "one_message_case.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
 using self_awareness::SelfAwareness;
 
-class StandingAlarmTest : public KeptFileTest {
+class StandingAlarmTest : public OneMessageTest<self_awareness::StandingAlarm> {
  protected:
-  StandingAlarmTest() {
-    standing_.run_id = "run";
-    standing_.recording = "/files/alarm.bag";
-    SelfAwareness& alarm = standing_.alarm;
+  StandingAlarmTest()
+      : OneMessageTest(writeStandingAlarm, readStandingAlarm, "the alarm in it is damaged") {
+    content_.run_id = "run";
+    content_.recording = "/files/alarm.bag";
+    SelfAwareness& alarm = content_.alarm;
     alarm.level = SelfAwareness::ERROR;
     alarm.alarm = 1600000000000000000;
     alarm.kind = "died";
@@ -31,16 +31,9 @@ class StandingAlarmTest : public KeptFileTest {
     suspect.since.sec = 7;
     alarm.suspects = {suspect};
   }
-  void write() override { writeStandingAlarm(standing_, path_); }
-  void read() override { readStandingAlarm(path_); }
   void expectRefused(const std::string& why, const std::function<void(SelfAwareness&)>& change) {
-    const self_awareness::StandingAlarm before = standing_;
-    change(standing_.alarm);
-    EXPECT_EQ(errorOf(written()), path_ + ": the alarm in it is damaged (" + why + ")");
-    standing_ = before;
+    OneMessageTest::expectRefused(why, [&](auto& standing) { change(standing.alarm); });
   }
-
-  self_awareness::StandingAlarm standing_;
 };
 
 TEST_F(StandingAlarmTest, IsReadAsItWasWritten) {
@@ -48,14 +41,25 @@ TEST_F(StandingAlarmTest, IsReadAsItWasWritten) {
   written();
   const auto read = readStandingAlarm(path_);
   ASSERT_TRUE(read);
-  EXPECT_EQ(*read, standing_);
-  standing_.alarm.level = SelfAwareness::OK;
+  EXPECT_EQ(*read, content_);
+  content_.alarm.level = SelfAwareness::OK;
   written();
   EXPECT_FALSE(readStandingAlarm(path_)) << "the alarm is over";
 }
 
 TEST_F(StandingAlarmTest, ADamagedFileIsRefusedByName) {
-  expectNoBeliefInDamage();
+  const std::string good = written();
+  ASSERT_EQ(errorOf(good), "");
+  for (std::size_t size = 0; size < good.size(); size += 37) {
+    EXPECT_TRUE(begins(errorOf(good.substr(0, size)), path_ + ": ")) << size;
+  }
+  for (std::size_t place = 0; place < good.size(); place += 11) {
+    std::string bad = good;
+    bad[place] = static_cast<char>(bad[place] ^ 0xff);
+    errorOf(bad);  // whatever it is, it is said or read
+  }
+  EXPECT_NE(errorOf("no bag"), "");
+  EXPECT_NE(errorOf(std::string(2 << 20, 'x')), "");
 }
 
 TEST_F(StandingAlarmTest, WhatCannotBeIsRefused) {
@@ -68,16 +72,16 @@ TEST_F(StandingAlarmTest, WhatCannotBeIsRefused) {
   expectRefused("it has too many suspects", [](SelfAwareness& alarm) {
     alarm.suspects.resize(core::kMostSuspects + 1, alarm.suspects[0]);
   });
-  standing_.alarm.component = "/\x1b[2J";
+  content_.alarm.component = "/\x1b[2J";
   EXPECT_NE(errorOf(written()), "") << "its texts are printable";
 }
 
 TEST_F(StandingAlarmTest, SuspectsAreThoseThatTheModelKnows) {
   core::Vocabulary vocabulary({{"/other", "/odom", "T"}, {"/driver", "/scan", "T"}});
-  self_awareness::Suspect unknown = standing_.alarm.suspects[0];
+  self_awareness::Suspect unknown = content_.alarm.suspects[0];
   unknown.scope = "/elsewhere";
-  standing_.alarm.suspects.push_back(unknown);
-  const auto suspects = fromMessages(standing_.alarm.suspects, vocabulary);
+  content_.alarm.suspects.push_back(unknown);
+  const auto suspects = fromMessages(content_.alarm.suspects, vocabulary);
   ASSERT_EQ(suspects.size(), 1U);
   EXPECT_EQ(suspects[0].id, 1U);
   EXPECT_EQ(suspects[0].component, "/driver");

@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <string>
-#include <vector>
 
 #include "self_awareness/SelfAwareness.h"
 
@@ -80,14 +78,6 @@ TEST_F(VerdictMessageTest, ASuspectThatIsNotSilentHasNoSilence) {
     EXPECT_TRUE(std::isnan(suspect.usual_shortest));
     EXPECT_TRUE(std::isnan(suspect.usual_longest));
   }
-}
-
-TEST_F(VerdictMessageTest, AChannelHasWordsOfItsOwn) {
-  core::Reason reason;
-  reason.words = "in bursts";
-  const self_awareness::Suspect message = this->message(0, reason);
-  EXPECT_EQ(message.reason, "in bursts");
-  EXPECT_EQ(describe(message), "/player on /scan: in bursts");
 }
 
 TEST_F(VerdictMessageTest, SaysWhichValueOfATypeFieldItIsAbout) {
