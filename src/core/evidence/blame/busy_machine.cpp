@@ -31,11 +31,13 @@ bool isOfLate(std::size_t track, const Scorer& scorer, const RecentEvents& event
 BusyMachine::BusyMachine(std::shared_ptr<const Model> model)
     : model_(std::move(model)),
       followers_(model_),
-      late_since_(model_->components().size(), kNever) {}
+      late_since_(model_->components().size(), kNever),
+      silent_at_(model_->components().size(), 0) {}
 
 void BusyMachine::restart() {
   busy_ = false;
   std::fill(late_since_.begin(), late_since_.end(), kNever);
+  std::fill(silent_at_.begin(), silent_at_.end(), 0);
   starved_since_.reset();
 }
 
@@ -72,13 +74,19 @@ std::optional<Busy> BusyMachine::late(const std::vector<double>& shares, const S
   std::vector<bool> silent(names.size(), false);
   const double enough = busy_ ? tuning.still_busy_share : tuning.near_limit;
   std::vector<bool> late(names.size(), false);
+  const std::int64_t now = scorer.heard().windowEnd();
+  // What looks back to a silence says what that was, and nothing of who is back.
+  const auto isBack = [&](std::size_t track, std::size_t component) {
+    return silent_at_[component] > now - model_->tracks()[track].channel->looksBack();
+  };
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const EventId id = model_->tracks()[track].to;
     const std::size_t component = model_->componentIndex(id);
     heard[component] = heard[component] || scorer.heard().hasSeen(id);
     if (model_->finding(track) == Finding::kSilent) {
       silent[component] = silent[component] || shares[track] > 1;
-    } else if (!late[component] && shares[track] > enough && !isAbsence(model_->finding(track))) {
+    } else if (!late[component] && shares[track] > enough && !isAbsence(model_->finding(track)) &&
+               !isBack(track, component)) {
       late[component] = isOfLate(track, scorer, events);
     }
   }
@@ -100,8 +108,9 @@ std::optional<Busy> BusyMachine::late(const std::vector<double>& shares, const S
     busy.components += heard[component] ? 1 : 0;
     roots += isLate(component) && !led[component] ? 1 : 0;
     silences += silent[component] ? 1 : 0;
+    silent_at_[component] = silent[component] ? now : silent_at_[component];
     std::int64_t& late = late_since_[component];
-    late = isLate(component) ? std::min(late, scorer.heard().windowEnd()) : kNever;
+    late = isLate(component) ? std::min(late, now) : kNever;
     if (isLate(component)) {
       since.push_back(late);
     }

@@ -44,6 +44,7 @@ class BusyMachine {
   bool busy_ = false;                          // many were late at once
   std::int64_t since_ = 0;                     // then: since when [ns]
   std::vector<std::int64_t> late_since_;       // by component [ns]; kNever: it is not
+  std::vector<std::int64_t> silent_at_;        // by component: at the last window so [ns]; 0: none
   std::optional<std::int64_t> starved_since_;  // [ns]
 };
 
