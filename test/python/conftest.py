@@ -18,7 +18,7 @@ import rosbag
 import rospy
 from std_msgs.msg import Header, String
 
-from self_awareness import LimitFindings, TrainedModel, Tuning
+from self_awareness import VERSION, LimitFindings, TrainedModel, Tuning
 
 Message = Tuple[float, str, str]
 """Stamp [s], source, topic."""
@@ -114,8 +114,9 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
         limits.stamp = 0
         model.calibration = limits
     state = model.__getstate__()
-    stamp = 4 * 32 + 4  # after the md5 of four messages and the length of the first
-    return state[:stamp] + state[stamp + 8:]
+    stamp = state.index(VERSION.encode()) + len(VERSION)  # it follows, 7 bits in a byte
+    end = next(at for at in range(stamp, len(state)) if state[at] < 0x80) + 1
+    return state[:stamp] + state[end:]
 
 
 @pytest.fixture

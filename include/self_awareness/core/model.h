@@ -94,11 +94,11 @@ struct Model {
   void dropCounts();
   /// Forgets what is watched, and all that was found of it: limits, threshold, findings.
   void dropWatched();
-  /// Adds what another learner counted, of other recordings: counts to counts, and half to half, as
-  /// if one had counted all of them. The order in which models are added decides nothing but the
-  /// ids. Edges and recordings are those of both. What was watched is dropped, since it was chosen
-  /// by fewer counts: watch() must be called again. Counts do not depend on the numbers of the
-  /// method: where those of the two differ, the sum has the defaults.
+  /// Adds what another learner counted, of other recordings: counts to counts, and half to half,
+  /// as if one had counted all of them. The order in which models are added decides nothing but
+  /// the ids. Edges and recordings are those of both. What was watched is dropped, since it was
+  /// chosen by fewer counts: watch() must be called again. Counts do not depend on the numbers of
+  /// the method: where those of the two differ, the sum has the defaults.
   /// @throw std::invalid_argument if the two do not count the same things, or were loaded without
   /// their counts; says what it is, and leaves the model as it was
   void add(const Model& other);

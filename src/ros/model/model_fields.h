@@ -19,9 +19,10 @@ inline void passSpan(ByteWriter& bytes, std::int64_t start, std::int64_t end) {
   bytes(start, std::max(start, end));
 }
 inline void passSpan(ByteReader& bytes, std::int64_t& start, std::int64_t& end) {
-  constexpr std::int64_t kMost = std::int64_t{1} << 61U;  // such that differences fit
+  constexpr std::int64_t kLeast = -(std::int64_t{1} << 61U);  // such that differences fit
+  constexpr std::int64_t kMost = std::int64_t{1} << 62U;      // ROS time ends before
   bytes(start, end);
-  check(-kMost <= start && start <= end && end <= kMost,
+  check(kLeast <= start && start <= end && end <= kMost,
         "a recording of it ends before it starts, or at a time that cannot be");
 }
 

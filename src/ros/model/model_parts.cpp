@@ -205,6 +205,9 @@ evidence::Statistics readCounts(ByteReader& bytes, const core::Vocabulary& vocab
   statistics.addRateWindows(rate_windows);
   statistics.addDuration(duration);
   for (evidence::Statistics::Recording& recording : recordings) {
+    check(recording.events.size() == recording.longest_gaps.size() &&
+              recording.events.size() == recording.firsts.size(),
+          "its recordings do not fit its event types");
     statistics.addRecording(std::move(recording));
   }
   for (EventId id = 0; id < vocabulary.size(); ++id) {

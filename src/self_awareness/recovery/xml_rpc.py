@@ -42,7 +42,8 @@ def ask(whom: str, address: str, within: float, most: int, method: str, *words: 
             if response.status != 200:
                 raise OSError(f'{response.status} {response.reason}')
             # What is compressed may become any size. It is not unpacked, and so no answer.
-            (code, text, value), = loads(response.read())[0]
+            answer: Any = loads(response.read().decode())
+            ((code, text, value),), _ = answer
     except (OSError, HTTPException, XmlRpcError, ExpatError, ValueError, TypeError,
             LookupError) as error:
         raise NoAnswer(f'{whom} does not answer ({error})') from error

@@ -44,7 +44,7 @@ class ToldJudge : public Judge {
   void standStill(const Waiting& /*pause*/, std::int64_t until) override { settled_at_ = until; }
   Judgement judge(const Window& window, std::int64_t /*end*/, NameSuspects suspects) override {
     Judgement judgement = *told_;
-    judgement.settling = window.start < settled_at_;
+    judgement.settling = judgement.settling || window.start < settled_at_;
     if (suspects == NameSuspects::kAlways ||
         (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
       if (judgement.suspects.empty()) {

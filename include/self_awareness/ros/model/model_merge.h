@@ -7,7 +7,8 @@
 
 namespace self_awareness::ros1 {
 
-/// Adds what another model learned (core::Model::add()); its file says the older method of the two.
+/// Adds what another model learned (core::Model::add()); its file says the older method of the
+/// two.
 /// @throw std::invalid_argument if the two do not count the same things, or a type field has too
 /// many values in both together; says what it is, and leaves the model as it was
 void merge(TrainedModel& model, const TrainedModel& other);
