@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 from pathlib import Path
 from typing import Callable, Dict, List, Sequence, TypeVar
 
@@ -129,7 +130,7 @@ def _parts(kinds: Sequence[str]) -> Dict[str, _Part]:
         'alarm stands': lambda rows: f'{60.0 * sum(row.standing_hours for row in rows):.3g} min'}
     for kind in kinds:
         within_s = WITHIN_S if kind == 'crash' else (SOON_S, float('inf'))
-        found[kind] = _of_kind(kind, lambda each, within=within_s: counts(each, *within))
+        found[kind] = _of_kind(kind, partial(_counts, within_s))
         found[f'{kind}: guilty first'] = _of_kind(
             kind, lambda each: part(each.first, in_percent=False))
     found['guilty first, all'] = _of_kind('', lambda each: part(each.first, in_percent=False))
@@ -138,6 +139,10 @@ def _parts(kinds: Sequence[str]) -> Dict[str, _Part]:
     found['alarms after a restart'] = _of_kind(
         '', lambda each: f'{each.after[0]} after {each.after[1]}' if each.after[1] else NONE)
     return found
+
+
+def _counts(within_s: Sequence[float], found: Found) -> str:
+    return counts(found, *within_s)
 
 
 def _of_kind(kind: str, told: Callable[[Found], str]) -> _Part:

@@ -121,13 +121,12 @@ class AggregatorTest(MonitorCase):
                 stack.enter_context(self.monitor(model, _ns=namespace, **parameters))
             yield
 
-    def test_0_who_has_its_turn_is_not_stale(self) -> None:
+    def test_1_no_sources_are_all_right(self) -> None:
+        """Nor is who waits for its turn."""
         with open(rospkg.RosPack().get_path('self_awareness')
                   + '/config/diagnostic_analyzers.yaml') as file:
             analyzers = yaml.safe_load(file)['analyzers']
         self.assertGreater(analyzers['self_awareness_sources']['timeout'], ROUND_S)
-
-    def test_1_no_sources_are_all_right(self) -> None:
         with self.monitors(source_diagnostics='false'), Aggregated() as aggregated:
             await_condition('OK', lambda: aggregated.all_ok(WHOLE, SOURCES), 60)
             self.assertEqual([x for x in aggregated.levels if x.startswith(SOURCES + '/')], [])

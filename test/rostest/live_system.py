@@ -180,16 +180,15 @@ def path_of(program: str) -> str:
     return executable(program)
 
 
-def ours(program: str, *arguments: str, env: Optional[Dict[str, str]] = None) -> Process:
+def ours(program: str, *arguments: str) -> Process:
     """A program or node of this package."""
-    return Process(path_of(program), *arguments, env=env)
+    return Process(path_of(program), *arguments)
 
 
-def talker(name: str, topic: str, rate: float, *arguments: str,
-           env: Optional[Dict[str, str]] = None) -> Process:
+def talker(name: str, topic: str, rate: float, *arguments: str) -> Process:
     """talker.cpp: a node whose periods vary as those of operation()."""
     return ours('talker', '__name:=' + name, '_output:=' + topic, '_rate:={}'.format(rate),
-                '_variation:=0.3', *arguments, env=env)
+                '_variation:=0.3', *arguments)
 
 
 def run_program(program: str, *arguments: str) -> str:

@@ -225,6 +225,7 @@ class MasterTest(unittest.TestCase):
             learner = self.start(path_of('learn'), '--subscribe', 'all', '__name:=learner',
                                  '_model:=' + os.path.join(self.folder, 'learned'))
             listener = self.start_listener()
+            listener.await_message('diagnostics', task='monitor')  # it hears what comes now
             self.start_component('/talker')
             listener.await_message('diagnostics', task='/talker', message='heard')
             for recorder in ('/recorder_1', '/learner_recorder'):

@@ -68,10 +68,8 @@ def write(folder: Path, section: Section, rows: Sequence[Row], command: str) -> 
 
 def _groups(section: Section, rows: Sequence[Row]) -> List[Tuple[str, List[Row]]]:
     """Return the rows of each subject, of all groups together and of each group."""
-    found: List[Tuple[str, List[Row]]] = []
-    for key in (lambda row: 'all', section.group):
-        if key is not None:
-            found += [(group, of_group) for (group, _), of_group in
-                      grouped(rows, lambda row: (key(row), replace(row.subject, robot=''))
-                              ).items()]
-    return found
+    def of(group: Callable[[Row], str]) -> List[Tuple[str, List[Row]]]:
+        return [(name, of_group) for (name, _), of_group in grouped(
+            rows, lambda row: (group(row), replace(row.subject, robot=''))).items()]
+
+    return of(lambda _: 'all') + ([] if section.group is None else of(section.group))

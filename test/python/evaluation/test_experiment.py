@@ -144,8 +144,8 @@ def test_an_interrupted_run_goes_on(tmp_path: Path) -> None:
     first = experiment.run(counted_units(done, ('a', 'b')), path, 'plan', 2)
     assert [(row.subject.robot, row.fault) for row in first] == [
         ('a', NORMAL), ('a', 'crash'), ('b', NORMAL), ('b', 'crash')]
-    for file in done.iterdir():
-        file.unlink()
+    for name in ('a', 'b'):
+        (done / name).unlink()
     # Some of a unit was written when the run was interrupted.
     with open(path, 'a', encoding='utf-8') as file:
         file.write('families,c,2 x 60 s + 1 x 60 s,evidence,,,normal\nfamilies,c,2 x')

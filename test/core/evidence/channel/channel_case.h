@@ -84,7 +84,7 @@ class TrackTest : public testing::Test {
 /// A comes irregularly, and B kUsual after it.
 class FollowedTest : public ChannelTest {
  protected:
-  FollowedTest() : ChannelTest(watch(startOf(followed(1), 1), startOf(followed(2), 2))) {}
+  FollowedTest() : ChannelTest(watch(startOf(followed(1), 1, 2), startOf(followed(2), 2, 2))) {}
 
   /// Adds an A, and a B so many ns later; none: no B. Closes a window.
   void ask(std::optional<std::int64_t> delay) {

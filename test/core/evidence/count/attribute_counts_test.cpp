@@ -120,8 +120,8 @@ TEST(AttributeCounts, AddUp) {
   Source source;
   source.spread = 1;
   source.repeats = true;
-  const Events one = messages(kA, kStart, kStart + 100 * kSecond, source, 1);
-  const Events other = later(messages(kA, kStart, kStart + 50 * kSecond, source, 2));
+  const Events one = messages(kA, kStart, kStart + 50 * kSecond, source, 1);
+  const Events other = later(messages(kA, kStart, kStart + 100 * kSecond, source, 2));
   Statistics sum = countsOf({one}, 1);
   sum.merge(countsOf({other}, 1));
   EXPECT_EQ(sum.type(kA).attributes, countsOf({one, other}, 1).type(kA).attributes);

@@ -116,6 +116,10 @@ TEST(Samples, AreRobotsWhereTheyAreSeveralElseStarts) {
       << "who has no name is another one";
 }
 
+TEST(Relations, TheOwnHistoryNeedsNoReason) {
+  EXPECT_TRUE(delays(timers({20 * kMillisecond}), kNoGraph, kA, kA).watched);
+}
+
 TEST(Relations, AsManyStartsAreEnoughAsItSaysAreNeeded) {
   const std::vector<std::int64_t> phases(10, 20 * kMillisecond);
   const Statistics one = timers({phases.front()});
