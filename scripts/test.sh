@@ -40,7 +40,7 @@ for tests in gtest pytest roslaunch-check; do
   run $tests make -C "$workspace/build" "run_tests_self_awareness_$tests" -j1
 done
 # Live tests mostly wait.
-run rostest make -C "$workspace/build" run_tests_self_awareness_rostest -j6
+run rostest make -C "$workspace/build" run_tests_self_awareness_rostest -j5
 
 catkin_test_results --verbose "$results" || true
 exec /usr/bin/python3 "$checkout/test/count_results.py" "$results" gtest pytest rostest

@@ -63,7 +63,7 @@ class StarvedTest(TrainedCase):
             await_condition('it is written', lambda: os.path.exists(path), 20)
         printed = run_program('score', path, '--model', self.path('model'), '--unknown', 'ignore',
                               '--settle-time', '0.5')
-        self.assertIn('the machine has been starved for', printed)
+        self.assertIn('machine has been starved for', printed)
         self.assertIn('alarms: 0,', printed)
 
 
