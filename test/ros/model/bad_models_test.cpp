@@ -145,7 +145,7 @@ TEST_F(BadModelsTest, RecordingsThatCannotBeAreRefused) {
   EXPECT_NE(error([](auto& recording) { recording.events.push_back(1); }), "");
   EXPECT_NE(error([](auto& recording) { recording.firsts.at(0) = kSecond << 30; }), "");
   EXPECT_NE(error([](auto& recording) { recording.longest_stall = -1; }), "");
-  EXPECT_NE(error([](auto& recording) { recording.end = std::int64_t{1} << 62U; }), "");
+  EXPECT_NE(error([](auto& recording) { recording.end = (std::int64_t{1} << 62U) + 1; }), "");
   EXPECT_NE(damagedModel([](TrainedModel& m) { ++m.findings.at(1).windows; }), "");
 }
 
