@@ -1,7 +1,7 @@
 """The programs on recordings of real robots; what is abnormal in them is told in shared/data."""
 from __future__ import annotations
 
-import re
+import json
 from pathlib import Path
 from typing import List, NamedTuple
 
@@ -19,23 +19,21 @@ PAPER = ('--detector', 'paper')
 
 
 class Alarm(NamedTuple):
-    """As printed: seconds from the recording's first message, and the suspects."""
+    """Seconds from the recording's first message, and the components of the suspects."""
 
     start: float
     end: float
     suspects: List[str]
 
 
-def alarms_of(out: str) -> List[Alarm]:
-    alarms: List[Alarm] = []
-    for line in out.splitlines():
-        interval = re.match(r'  ([\d.]+) - ([\d.]+) s', line)
-        suspect = re.match(r'    \d\. (\S+) ', line)
-        if interval:
-            alarms.append(Alarm(float(interval[1]), float(interval[2]), []))
-        elif suspect and alarms:
-            alarms[-1].suspects.append(suspect[1])
-    return alarms
+def alarms_in(bag: Path, model: str, *options: str) -> List[Alarm]:
+    """Return the alarms that `score` finds."""
+    said = Path(f'{model}.json')
+    assert score.main([str(bag), '--model', model, '--json', str(said), *options]) == 0
+    return [Alarm(each['begin_s'], each['end_s'],
+                  [suspect['component'] for suspect in each['suspects']])
+            for each in json.loads(said.read_text('utf-8'))['recordings'][0]['alarms']
+            if each['level'] == 'ERROR']
 
 
 @pytest.fixture(scope='module')
@@ -59,8 +57,7 @@ def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path:
     assert calibrate.main(['--model', model, '--normal', f'{normal}@65', *PAPER, '--cutoff',
                            'fpr=0.01', '-o', model]) == 0
     capsys.readouterr()
-    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model, *PAPER]) == 0
-    alarms = alarms_of(capsys.readouterr().out)
+    alarms = alarms_in(wheeled_robot / 'feb13_outage.bag', model, *PAPER)
     outage = next(alarm for alarm in alarms if alarm.end > 28.0)
     assert 28.0 < outage.start < 29.0
     assert 36.0 < outage.end < 39.0
@@ -76,8 +73,8 @@ def test_without_an_option_the_outage_is_found(wheeled_robot: Path, tmp_path: Pa
     assert train.main([*(str(wheeled_robot / f'{day}_normal.bag') for day in ('feb13', 'jan17')),
                        '-o', model]) == 0
     assert 'start-up left out of 1 of 2 recordings: the first 23.8 s' in capsys.readouterr().out
-    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
-    outage = next(alarm for alarm in alarms_of(capsys.readouterr().out) if alarm.end > 28.0)
+    outage = next(alarm for alarm in alarms_in(wheeled_robot / 'feb13_outage.bag', model)
+                  if alarm.end > 28.0)
     assert 28.0 < outage.start < 31.0
     assert outage.suspects[0] in ('/motors_imu', '/urg_node', '/go_forward')
     assert '/slam_gmapping' not in outage.suspects, 'it goes on'
@@ -92,8 +89,7 @@ def test_the_laser_that_is_gone_is_named(wheeled_robot: Path, tmp_path: Path, ca
     assert calibrate.main([*arguments, 'fpr=0.01']) == 1  # too many windows are silent
     assert calibrate.main([*arguments, 'fpr=0.02']) == 0
     capsys.readouterr()
-    assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model, *PAPER]) == 0
-    alarms = alarms_of(capsys.readouterr().out)
+    alarms = alarms_in(wheeled_robot / 'jan17_outage.bag', model, *PAPER)
     outage = next(alarm for alarm in alarms if alarm.end > 67.0)
     assert outage.start < 68.0 and outage.end > 100.0
     assert alarms[-1].suspects[0] == '/urg_node' and alarms[-1].end > 120.0
@@ -105,8 +101,7 @@ def test_evidence_finds_the_outage_and_the_rest_is_quiet(wheeled_robot: Path, tm
     model = str(tmp_path / 'm')
     _train(model, str(wheeled_robot / 'feb13_normal.bag'), '--start', '24')
     assert 'preliminary' in capsys.readouterr().out
-    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
-    alarms = alarms_of(capsys.readouterr().out)
+    alarms = alarms_in(wheeled_robot / 'feb13_outage.bag', model)
     outage, = alarms
     assert 28.0 < outage.start < 29.0 and 36.0 < outage.end < 41.0
 
@@ -120,8 +115,7 @@ def test_evidence_finds_that_the_laser_is_gone(wheeled_robot: Path, tmp_path: Pa
     model = str(tmp_path / 'm')
     _train(model, str(wheeled_robot / 'jan17_normal.bag'), '--start', '15')
     capsys.readouterr()
-    assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model]) == 0
-    alarms = alarms_of(capsys.readouterr().out)
+    alarms = alarms_in(wheeled_robot / 'jan17_outage.bag', model)
     assert all(alarm.start > 42.0 for alarm in alarms)
     assert alarms[-1].start <= 70.3 and alarms[-1].end > 120.0
 
