@@ -111,5 +111,7 @@ class Row:
         if self.is_normal:
             return (f'{self.fault}, {self.lasted_s:.0f} s: alarms: {self.alarms}, suspicions: '
                     f'{self.suspicions}; {self.said} {self.note}')
+        if not self.is_fault:
+            return f'{self.fault}: {self.node}'
         return (f'{self.fault} {self.node}: {self.void or self.latency_s}, suspicion '
                 f'{self.suspicion_s}, cleared {self.cleared_s}; {self.said} {self.note}')
