@@ -16,8 +16,7 @@ from self_awareness_evaluation.live.processes import Processes
 from self_awareness_evaluation.live.recordings import BAGS, EVENTS, SESSION, record_command
 from self_awareness_evaluation.live.reliability import AT_RANDOM, HANGS
 from self_awareness_evaluation.live.session import Plan, Step
-from self_awareness_evaluation.records import Learning
-from self_awareness_evaluation.records import NORMAL
+from self_awareness_evaluation.records import NORMAL, Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
 
 NORMAL_S = 20.0
