@@ -18,7 +18,7 @@ void Heard::hear(const Waiting& waiting) {
     return;  // what was before is in no recording of events
   }
   if (waiting.stoodStill()) {
-    pause_ = {waiting.to - waiting.waited, pause_.all, pause_.all + waiting.waited};
+    pause_ = {waiting.to, pause_.all, pause_.all + waiting.waited};
     stalls_.passTo(waiting.to);
   } else {
     starvation_.add(waiting);

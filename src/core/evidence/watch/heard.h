@@ -61,7 +61,7 @@ class Heard {
       first_stamps_[arrival.id] = arrival.stamp;
     }
     stamps_[arrival.id] = arrival.stamp;
-    paused_before_[arrival.id] = arrival.stamp < pause_.from ? pause_.before : pause_.all;
+    paused_before_[arrival.id] = arrival.stamp < pause_.to ? pause_.before : pause_.all;
     numbers_[arrival.id] = ++number_;
   }
   /// A mode of the robot is told (stream/mode.h), whether the model knows it or not.
@@ -96,9 +96,13 @@ class Heard {
   std::int64_t lasted(EventId mode, std::int64_t stamp) const { return mode_.lasted(mode, stamp); }
   /// Time since the last event of a type, at the end of the last window [ns]; 0 before the first.
   std::int64_t silence(EventId id) const { return hasSeen(id) ? window_end_ - stamps_[id] : 0; }
-  /// The same without the time in which this program stood still, and heard nobody.
+  /// The same without the time in which this program stood still, and heard nobody: the longer
+  /// part of before and after it. Who stood still with it may have another phase since.
   std::int64_t listenedFor(EventId id) const {
-    return std::max<std::int64_t>(silence(id) - (pause_.all - paused_before_[id]), 0);
+    const std::int64_t paused = pause_.all - paused_before_[id];
+    const std::int64_t all = std::max<std::int64_t>(silence(id) - paused, 0);
+    const std::int64_t after = std::clamp<std::int64_t>(window_end_ - pause_.to, 0, all);
+    return paused > 0 ? std::max(after, all - after) : all;
   }
   /// The same without the time in which the whole robot stood still, or its machine was starved:
   /// then nobody's silence grows.
@@ -136,7 +140,7 @@ class Heard {
  private:
   /// How long this program stood still.
   struct Pause {
-    std::int64_t from = 0;    // begin of the last time [ns]
+    std::int64_t to = 0;      // end of the last time [ns]
     std::int64_t before = 0;  // all before that [ns]
     std::int64_t all = 0;     // [ns]
   };
