@@ -10,7 +10,7 @@ namespace self_awareness::core::evidence {
 /// Every number of the evidence detector's method (docs/method.md, section 8). They are part of a
 /// trained model: who judges by it uses the numbers that it was trained with. A robot's user
 /// changes none of them; `evaluate` does, to measure what each is worth
-/// (docs/evaluation/ablation.md). tuningNumbers() has the meaning, the unit and the range of each.
+/// (docs/evaluation/research.md). tuningNumbers() has the meaning, the unit and the range of each.
 /// Times are in seconds.
 struct Tuning {
   // What is known well enough to be judged.
