@@ -95,6 +95,7 @@ void Detector::restart() {
 
 void Detector::onClockStep() {
   judge_->restart();
+  resumed_at_ = 0;
   heard_.clear();
   unknown_.clear();
   clearAlarm();
