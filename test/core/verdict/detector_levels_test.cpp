@@ -73,6 +73,18 @@ TEST_F(DetectorLevelsTest, AnAlarmThatStandsOutlastsAPause) {
   EXPECT_FALSE(verdict_.alarm);
 }
 
+TEST_F(DetectorLevelsTest, APauseBeforeTimeWentBackHoldsNoAlarmOfAfterIt) {
+  start();
+  detector_->hear({99 * kSecond, 100 * kSecond, kSecond});
+  detector_->restart();
+  now_ = 0;
+  detector_->add({0, 0});
+  windows(10);
+  EXPECT_TRUE(alarmWindow({suspect("/a", 0)}).alarm);
+  windows(30);
+  EXPECT_FALSE(verdict_.alarm);
+}
+
 TEST_F(DetectorLevelsTest, WhatWasMissedSettles) {
   start();
   detector_->onMissed({3, 4}, 70 * kSecond);

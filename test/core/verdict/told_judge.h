@@ -55,7 +55,10 @@ class ToldJudge : public Judge {
     }
     return judgement;
   }
-  void restart() override { settling_.clear(); }
+  void restart() override {
+    settling_.clear();
+    settled_at_ = 0;
+  }
   const std::map<EventId, std::int64_t>& settling() const { return settling_; }
 
  private:
