@@ -23,7 +23,9 @@ EVIDENCE: Dict[str, Set[str]] = {
     'watch': {'count', 'tuning'},
     'channel': {'count', 'watch', 'tuning'},
     'limits': {'count', 'watch', 'channel', 'tuning'},
-    'blame': {'count', 'watch', 'channel', 'tuning'},
+    'explain': {'count', 'watch', 'channel', 'tuning'},
+    'excuse': {'count', 'watch', 'channel', 'tuning', 'explain'},
+    'presence': {'count', 'watch', 'channel', 'tuning', 'explain', 'excuse'},
 }
 CHANNEL = 'src/core/evidence/channel'
 LIST_OF_CHANNELS = 'channels_of_the_method.cpp'

@@ -4,22 +4,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/evidence/blame/blame.h"
-#include "core/evidence/blame/busy_machine.h"
-#include "core/evidence/blame/excused.h"
-#include "core/evidence/blame/never_heard.h"
-#include "core/evidence/blame/new_mode.h"
-#include "core/evidence/blame/silent_together.h"
-#include "core/evidence/blame/unsubscribed.h"
-#include "core/evidence/blame/who_sends.h"
 #include "core/evidence/channel/scorer.h"
+#include "core/evidence/excuse/accepted.h"
+#include "core/evidence/excuse/busy_machine.h"
+#include "core/evidence/excuse/settling.h"
+#include "core/evidence/excuse/stopped_together.h"
+#include "core/evidence/explain/excess.h"
+#include "core/evidence/explain/explanation.h"
+#include "core/evidence/presence/never_heard.h"
+#include "core/evidence/presence/unsubscribed.h"
+#include "core/evidence/presence/who_sends.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -48,12 +48,12 @@ class Judge : public core::Judge {
       scorer_.enter(event);  // one that training never saw is no stranger
       return std::nullopt;
     }
-    const bool unknown = who_sends_.add(event, excused_);
+    const bool unknown = who_sends_.add(event, accepted_);
     const std::optional<std::int64_t> gap = scorer_.add(event);
     if (model_->knows(event.id)) {
       events_.add(event, scorer_.stalled());
-      if (gap && excused_.isBack(event.id, *gap)) {
-        settleUntil(event.id, event.stamp + settle_time_);
+      if (gap && accepted_.isBack(event.id, *gap)) {
+        settling_.cover(event.id, event.stamp + settle_time_);
       }
     }
     return ObservedEvent{event, unknown, gap};
@@ -65,11 +65,11 @@ class Judge : public core::Judge {
   void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
   void standStill(const Waiting& pause, std::int64_t until) override;
   void accept(const Acceptances& accepted) override {
-    excused_.accept(accepted);
+    accepted_.accept(accepted);
     unsubscribed_.accept(accepted);
-    new_mode_.accept(accepted);
+    stopped_together_.accept(accepted);
   }
-  bool isAccepted(EventId id, Kind kind) const override { return excused_.isExcused(id, kind); }
+  bool isAccepted(EventId id, Kind kind) const override { return accepted_.isExcused(id, kind); }
   void setMissing(const std::set<SourceGraph::Subscription>& missing) override {
     unsubscribed_.set(missing);
   }
@@ -80,21 +80,15 @@ class Judge : public core::Judge {
   void restart() override;
 
  private:
-  /// Lets an event type settle, if the model knows it.
-  void settleUntil(EventId id, std::int64_t until);
   /// Takes back that there are too few events, in a window that ended with the recording.
   void leaveOutFewer(std::vector<double>& evidence) const;
-  /// Forgets what the sums say of event types that have settled since the window before.
-  /// @param now start of the window [ns]
-  void forgetStarts(std::int64_t now);
-  /// Takes back what the tracks say of event types that settle, and, after this program stood
-  /// still, all but who is silent.
-  void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
   /// Finds the shares of a window by the evidence, without what is not judged now.
   void weigh(const Window& window, std::int64_t end, std::vector<double>& evidence);
-  /// Takes back shares that are no fault of the component: all are silent, or a mode explains it.
-  /// Tells what is left of them, but for a mode that training never saw.
+  /// Finds what is unusual, and excuses what is no fault of the component. Takes back the shares
+  /// of what is normal, and tells what is left of them, but for a mode that training never saw.
   void excuse(const Window& window, std::int64_t end, Judgement& judgement);
+  /// Takes back the shares of what has an excuse.
+  void takeBack(Excuse excuse);
   /// Excuses who does not come, or is unusual, because of who sends.
   void excuseBySenders(const Window& window);
   /// The channels that speak against somebody, as Judgement::evidence.
@@ -113,23 +107,19 @@ class Judge : public core::Judge {
   Scorer scorer_;
   RecentEvents events_;
   std::shared_ptr<const Upstream> upstream_;
-  Blame blame_;
+  Explanation explanation_;
   NeverHeard never_heard_;
   WhoSends who_sends_;
-  Excused excused_;
   Unsubscribed unsubscribed_;
+  Accepted accepted_;
+  Settling settling_;
+  StoppedTogether stopped_together_;
   BusyMachine busy_machine_;
-  SilentTogether silent_together_;
-  NewMode new_mode_;
   std::int64_t settle_time_ = 0;  // [ns]
   std::vector<double> shares_;    // of its limit that each track has reached
   SharesHandler tell_shares_;
-  bool settling_ = false;                 // some event types did at the start of the last window
-  std::int64_t last_window_ = 0;          // its start [ns]
-  std::vector<std::int64_t> settled_at_;  // [ns], by id
-  std::int64_t all_settled_at_ = std::numeric_limits<std::int64_t>::min();  // the latest of them
-  std::int64_t resumed_at_ =
-      std::numeric_limits<std::int64_t>::min();  // all settled after a pause
+  Excesses excesses_;
+  std::vector<Excess>* unusual_ = nullptr;  // in the last window
 };
 
 Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
@@ -142,17 +132,17 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       scorer_(model_, window),
       events_(model_->size()),
       upstream_(std::make_shared<Upstream>(model_->components(), graph)),
-      blame_(model_, upstream_),
+      explanation_(model_, upstream_),
       never_heard_(*model_, limits_.value_or(Limits{}), upstream_),
       who_sends_(model_, heard, graph, never_heard_.expected()),
-      excused_(model_, std::move(heard)),
       unsubscribed_(*model_),
-      busy_machine_(model_),
-      silent_together_(model_, std::move(graph)),
-      new_mode_(model_, upstream_),
+      accepted_(model_, std::move(heard)),
+      settling_(model_),
+      stopped_together_(model_, upstream_, std::move(graph)),
+      busy_machine_(model_, explanation_),
       shares_(model_->tracks().size(), 0),
       tell_shares_(std::move(shares)),
-      settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
+      excesses_(model_) {
   if (limits_ && limits_->tracks.size() != model_->tracks().size()) {
     throw std::invalid_argument("the limits are not those of the model: calibrate it again");
   }
@@ -163,32 +153,22 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
 
 void Judge::settle(const Event& first, std::int64_t settle_time) {
   settle_time_ = settle_time;
-  settleUntil(first.id, first.stamp + settle_time);
+  settling_.cover(first.id, first.stamp + settle_time);
 }
 
 void Judge::leaveOut(const std::vector<EventId>& ids, std::int64_t until) {
   for (const EventId id : ids) {
-    settleUntil(id, until);
+    settling_.cover(id, until);
     if (model_->vocabulary().tellsMode(id)) {
       scorer_.loseMode();  // another one may have been told
     }
   }
 }
 
-void Judge::settleUntil(EventId id, std::int64_t until) {
-  if (model_->knows(id)) {
-    settled_at_[id] = std::max(settled_at_[id], until);
-    all_settled_at_ = std::max(all_settled_at_, settled_at_[id]);
-    settling_ = true;
-  }
-}
-
 void Judge::standStill(const Waiting& pause, std::int64_t until) {
   scorer_.hear(pause);
   never_heard_.leaveOut(pause.waited);
-  resumed_at_ = std::max(resumed_at_, until);
-  all_settled_at_ = std::max(all_settled_at_, until);
-  settling_ = true;
+  settling_.coverAll(until);
 }
 
 void Judge::restart() {
@@ -197,12 +177,10 @@ void Judge::restart() {
   never_heard_.restart();
   who_sends_.restart();
   unsubscribed_.restart();
+  settling_.restart();
+  stopped_together_.restart();
   busy_machine_.restart();
-  new_mode_.restart();
-  settling_ = false;
-  last_window_ = 0;
-  std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
-  all_settled_at_ = resumed_at_ = std::numeric_limits<std::int64_t>::min();
+  excesses_.restart();
 }
 
 void Judge::leaveOutFewer(std::vector<double>& evidence) const {
@@ -213,35 +191,9 @@ void Judge::leaveOutFewer(std::vector<double>& evidence) const {
   }
 }
 
-void Judge::forgetStarts(std::int64_t now) {
-  for (EventId id = 0; settling_ && id < settled_at_.size(); ++id) {
-    const std::int64_t settled_at = std::max(settled_at_[id], resumed_at_);
-    if (last_window_ < settled_at && settled_at <= now) {
-      scorer_.forget(id);
-    }
-  }
-  settling_ = now < all_settled_at_;
-  last_window_ = now;
-}
-
-void Judge::leaveOutNew(std::int64_t now, std::vector<double>& evidence) const {
-  if (now >= all_settled_at_ + kRateSpan) {
-    return;
-  }
-  for (std::size_t track = 0; track < evidence.size(); ++track) {
-    const Track& watched = model_->tracks()[track];
-    const std::int64_t since = now - watched.channel->looksBack();
-    // Silence is counted without the pause: who sends is heard again before it is unusual.
-    if (since < std::max(settled_at_[watched.to], settled_at_[watched.from]) ||
-        (since < resumed_at_ && watched.channel->finding() != Finding::kSilent)) {
-      evidence[track] = 0;
-    }
-  }
-}
-
 Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects suspects) {
   Judgement judgement;
-  forgetStarts(window.start);
+  settling_.forgetStarts(window.start, scorer_);
   std::vector<double>& evidence = scorer_.closeWindow(end);
   if (!limits_) {
     return judgement;
@@ -254,10 +206,8 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   const double largest = largestOf(shares_);
   judgement.score = -std::max(largest, never_heard_.share());
   judgement.threshold = kThreshold;
-  judgement.busy =
-      busy_machine_.closeWindow(shares_, scorer_, events_, *judgement.score < kThreshold);
   if (who_sends_.isAbnormal() ||
-      (judgement.busy && (judgement.busy->late > 0 ||
+      (judgement.busy && ((judgement.busy->late > 0 && !unusual_->empty()) ||
                           judgement.busy->starved > model_->tuning().longest_starvation))) {
     // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
     judgement.score = std::min(*judgement.score, kStillBusy);
@@ -276,15 +226,15 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     // Who is within his own range is no suspect because somebody else is unknown.
     judgement.suspects = who_sends_.alone(window, scorer_, suspects == NameSuspects::kAlways);
   }
-  excused_.leaveOut(judgement.suspects);
+  accepted_.leaveOut(judgement.suspects);
   return judgement;
 }
 
 void Judge::excuseBySenders(const Window& window) {
-  who_sends_.closeWindow(scorer_.heard(), excused_);
-  never_heard_.excuse(who_sends_.needNotCome(excused_.mayBeSilent()));
+  who_sends_.closeWindow(scorer_.heard(), accepted_);
+  never_heard_.excuse(who_sends_.needNotCome(accepted_.mayBeSilent()));
   for (const EventId id : who_sends_.doubled()) {
-    settleUntil(id, window.start + window_ + settle_time_);
+    settling_.cover(id, window.start + window_ + settle_time_);
   }
 }
 
@@ -292,8 +242,8 @@ void Judge::weigh(const Window& window, std::int64_t end, std::vector<double>& e
   if (end < window.start + window_) {
     leaveOutFewer(evidence);
   }
-  leaveOutNew(window.start, evidence);
-  excused_.leaveOut(scorer_.heard(), evidence);
+  settling_.leaveOut(window.start, evidence);
+  accepted_.leaveOut(scorer_.heard(), evidence);
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     // Most tracks say nothing most of the time, and a division takes its time.
     const bool counts = evidence[track] > 0 && !who_sends_.moved()[model_->tracks()[track].to];
@@ -303,18 +253,27 @@ void Judge::weigh(const Window& window, std::int64_t end, std::vector<double>& e
 }
 
 void Judge::excuse(const Window& window, std::int64_t end, Judgement& judgement) {
-  if (largestOf(shares_) > 1) {
-    judgement.silent = silent_together_.find(shares_, *limits_, scorer_, who_sends_.silences(end));
-    if (!judgement.silent) {
-      judgement.mode =
-          new_mode_.excuseAccepted(shares_, *limits_, scorer_, excused_.mayBeSilent());
-    }
+  unusual_ = &excesses_.closeWindow(shares_, scorer_);
+  StoppedTogether::Found together = stopped_together_.excuse(
+      *unusual_, *limits_, scorer_, who_sends_.silences(end), accepted_.mayBeSilent());
+  judgement.silent = std::move(together.silent);
+  judgement.mode = std::move(together.mode);
+  judgement.busy = busy_machine_.excuse(*unusual_, scorer_, events_);
+  if (judgement.busy && judgement.silent && judgement.silent->others_go_on) {
+    judgement.silent.reset();  // whom a busy machine holds up
   }
-  if (tell_shares_) {  // what is accepted is no evidence, also to who listens
+  takeBack(Excuse::kAccepted);
+  if (tell_shares_) {
     tell_shares_(window, {shares_, never_heard_.shares()});
   }
-  if (largestOf(shares_) > 1 && !judgement.silent) {
-    judgement.silent = new_mode_.excuse(shares_, *limits_, scorer_, excused_.mayBeSilent());
+  takeBack(Excuse::kNewMode);
+}
+
+void Judge::takeBack(Excuse excuse) {
+  for (const Excess& excess : *unusual_) {
+    if (excess.excuse == excuse) {
+      shares_[excess.track] = 0;
+    }
   }
 }
 
@@ -356,7 +315,8 @@ std::string Judge::evidenceOf(const Judgement& judgement) const {
 }
 
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
-  std::vector<Suspect> first = blame_.suspects(shares_, scorer_, events_, window);
+  std::vector<Suspect> first = explanation_.suspects(*unusual_, scorer_, events_);
+  addUnknown(window, first);
   who_sends_.dropMovers(first);
   std::vector<Suspect> second = never_heard_.suspects();
   if (!silent_first || (!first.empty() && never_heard_.isMissedBy(first.front().id))) {

@@ -91,9 +91,6 @@ const std::vector<TuningNumber>& tuningNumbers() {
       {"longest_stall", &Tuning::longest_stall, 0, 1e3, "s", "And at most so long.", 0},
       {"between_stalls", &Tuning::between_stalls, 0, 1e9, "s",
        "Time in which one stall is forgiven.", std::nullopt},
-      {"still_busy_share", &Tuning::still_busy_share, 0, 1e3, "limits",
-       "Share of its limit from which a component counts as late where the machine is busy.",
-       std::nullopt},
       {"starved", &Tuning::starved, 0, 2, "",
        "Share of the time, beyond the usual one, for which processes wait while the machine is "
        "starved.",

@@ -14,12 +14,6 @@ std::optional<Alarm::Level> levelOf(const Verdict& verdict) {
   return verdict.suspicion ? std::optional(Alarm::Level::kSuspicion) : std::nullopt;
 }
 
-/// Whether it is what a machine without time does to everybody.
-bool isOfTime(Kind kind) {
-  return kind == Kind::kSlow || kind == Kind::kFast || kind == Kind::kLate ||
-         kind == Kind::kEarly || kind == Kind::kOutOfOrder;
-}
-
 Kind kindOf(const Silent& silent) {
   return silent.others_go_on ? Kind::kNewMode : Kind::kAllSilent;
 }
@@ -34,11 +28,63 @@ std::vector<Suspect> withComponents(std::vector<Suspect> suspects, const Vocabul
   return suspects;
 }
 
-void blameFirstOf(const std::vector<Suspect>& suspects, Alarm& alarm) {
-  if (!suspects.empty()) {
-    alarm.culprit = suspects.front().component;
-    alarm.reason = suspects.front().reason.words;
-    alarm.kind = suspects.front().reason.kind;
+void blame(const Suspect& suspect, Alarm& alarm) {
+  alarm.culprit = suspect.component;
+  alarm.reason = suspect.reason.words;
+  alarm.kind = suspect.reason.kind;
+}
+
+/// The suspect that is the culprit; null: there is none.
+const Suspect* culpritOf(const Alarm& alarm) {
+  for (const std::vector<Suspect>* suspects : {&alarm.suspects, &alarm.later}) {
+    for (const Suspect& suspect : *suspects) {
+      if (suspect.component == alarm.culprit && !alarm.culprit.empty()) {
+        return &suspect;
+      }
+    }
+  }
+  return nullptr;
+}
+
+/// Whether who has not come should have done so before a stamp [ns].
+bool beganBefore(const Suspect& suspect, std::int64_t stamp) {
+  const double usual = suspect.reason.after.empty() ? suspect.reason.usual_longest : 0;
+  return static_cast<double>(suspect.onset) + usual * 1e9 < static_cast<double>(stamp);
+}
+
+/// Takes in that a culprit has an excuse, or that somebody is to blame for what began before. Who
+/// is to blame is settled when an alarm is raised, and changes for nothing else.
+void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Alarm& alarm) {
+  const bool was_busy = alarm.kind == Kind::kBusyMachine;
+  const bool absent =
+      !suspects.empty() && suspects.front().abnormal && isAbsence(suspects.front().reason.kind);
+  if (was_busy && !verdict.busy && absent) {  // a machine that is busy no more is not to blame
+    blame(suspects.front(), alarm);
+  }
+  const Suspect* const culprit = culpritOf(alarm);
+  const bool is_named = std::any_of(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
+    return suspect.component == alarm.culprit;
+  });
+  if (culprit != nullptr && is_named) {
+    const Suspect& first = suspects.front();
+    if (absent && first.component != alarm.culprit && beganBefore(first, culprit->onset)) {
+      blame(first, alarm);
+    }
+  } else if (verdict.busy &&
+             (culprit != nullptr ? verdict.busy->since <= culprit->onset
+                                 : alarm.kind == Kind::kNewMode || alarm.suspects.empty())) {
+    alarm.kind = Kind::kBusyMachine;
+    alarm.culprit.clear();
+    alarm.reason.clear();
+  }
+  const bool is_silent_with_them = !is_named && isAbsence(alarm.kind) && alarm.silent &&
+                                   alarm.silent->since <= alarm.begin &&
+                                   alarm.silent->has(alarm.culprit);
+  if (alarm.silent && (alarm.kind == Kind::kAllSilent || alarm.kind == Kind::kNewMode ||
+                       (verdict.silent && ((was_busy && !verdict.busy) || is_silent_with_them)))) {
+    alarm.kind = kindOf(*alarm.silent);
+    alarm.culprit.clear();
+    alarm.reason = describe(*alarm.silent);
   }
 }
 
@@ -111,14 +157,17 @@ void Alarms::begin(const Verdict& verdict, std::int64_t end, const std::optional
 void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vocabulary) {
   Alarm& alarm = *standing_;
   const bool stands = alarm.level == levelOf(verdict);
+  const std::vector<Suspect> suspects = withComponents(verdict.suspects, vocabulary);
   if (stands && alarm.evidence.empty() && alarm.suspects.empty() &&
-      !(verdict.evidence.empty() && verdict.suspects.empty())) {
+      !(verdict.evidence.empty() && suspects.empty())) {
     alarm.evidence = verdict.evidence;
-    alarm.suspects = withComponents(verdict.suspects, vocabulary);
+    alarm.suspects = suspects;
     alarm.culprit.clear();
     alarm.reason.clear();
     alarm.kind = verdict.silent ? kindOf(*verdict.silent) : Kind::kOutOfOrder;
-    blameFirstOf(alarm.suspects, alarm);
+    if (!suspects.empty()) {
+      blame(suspects.front(), alarm);
+    }
   }
   if (stands && !alarm.suspects.empty()) {
     growWith(verdict, alarm);
@@ -126,30 +175,12 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
   if (verdict.busy && !alarm.busy) {
     alarm.busy = verdict.busy;
   }
-  // What began before stays what it was: also below.
-  if (stands && alarm.busy && alarm.busy->since <= alarm.begin && isOfTime(alarm.kind)) {
-    alarm.kind = Kind::kBusyMachine;
-    alarm.culprit.clear();
-    alarm.reason.clear();
-  }
   if (stands && verdict.silent &&
       (!alarm.silent || verdict.silent->components.size() > alarm.silent->components.size())) {
     alarm.silent = verdict.silent;
   }
-  // A machine that is busy no more is not to blame.
-  const bool was_busy = stands && alarm.kind == Kind::kBusyMachine && !verdict.busy;
-  if (was_busy && !verdict.suspects.empty() && verdict.suspects.front().abnormal &&
-      isAbsence(verdict.suspects.front().reason.kind)) {
-    blameFirstOf(withComponents(verdict.suspects, vocabulary), alarm);
-  }
-  if (stands && alarm.silent &&
-      (alarm.kind == Kind::kAllSilent || alarm.kind == Kind::kNewMode ||
-       (was_busy && verdict.silent) ||
-       (alarm.kind == Kind::kDied && alarm.silent->since <= alarm.begin &&
-        alarm.silent->has(alarm.culprit)))) {
-    alarm.kind = kindOf(*alarm.silent);
-    alarm.culprit.clear();
-    alarm.reason = describe(*alarm.silent);
+  if (stands) {
+    findCause(verdict, suspects, alarm);
   }
   alarm.end = end;
   alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));

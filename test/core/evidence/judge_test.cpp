@@ -117,7 +117,9 @@ TEST_F(EvidenceJudgeTest, OfAStarvedMachineNobodyIsNamed) {
   EXPECT_EQ(judgement.evidence, "busy");
   EXPECT_TRUE(judgement.suspects.empty());
   starve(2 * kSecond);
-  EXPECT_TRUE(judgement.abnormal) << "no more than a stall: who is dead is found";
+  EXPECT_TRUE(judgement.abnormal) << "what is forgiven is no more than a stall";
+  EXPECT_TRUE(judgement.suspects.empty()) << "but held up";
+  starve(6 * kSecond);
   ASSERT_FALSE(judgement.suspects.empty());
   EXPECT_EQ(judgement.suspects.front().id, kA);
 }
@@ -267,10 +269,10 @@ TEST_F(EvidenceJudgeTest, WhatIsAcceptedIsNoEvidenceAndAllElseIs) {
     const std::vector<EventId> ids = idsOf(judgement.suspects);
     return std::set<EventId>(ids.begin(), ids.end());
   };
-  EXPECT_EQ(named(judgedWith({})), (std::set<EventId>{kA, kB}));
+  EXPECT_TRUE(judgedWith({}).silent) << "all are";
   const Judgement still_silent = judgedWith(allOf({accepted("/b", "", Kind::kSlow)}));
   EXPECT_EQ(still_silent.evidence, "overdue") << "its rate is accepted, its silence is not";
-  EXPECT_EQ(named(still_silent), (std::set<EventId>{kA, kB}));
+  EXPECT_TRUE(still_silent.silent);
   const Judgement of_a = judgedWith(allOf({accepted("/b")}));
   EXPECT_TRUE(of_a.abnormal) << "another one is silent, too";
   EXPECT_EQ(named(of_a), (std::set<EventId>{kA}));

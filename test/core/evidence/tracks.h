@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "core/evidence/explain/excess.h"
 #include "recordings.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/limits/limits.h"
@@ -43,6 +45,12 @@ inline void expectSameLimits(const Limits& a, const Limits& b) {
                 (std::isnan(a.tracks[track]) && std::isnan(b.tracks[track])))
         << track;
   }
+}
+
+/// What is unusual where tracks have reached these shares of their limits.
+inline std::vector<Excess> excessesOf(const std::shared_ptr<const Model>& model,
+                                      const std::vector<double>& shares, const Scorer& scorer) {
+  return Excesses(model).closeWindow(shares, scorer);
 }
 
 /// The number of one track.

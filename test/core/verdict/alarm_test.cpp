@@ -42,14 +42,16 @@ class AlarmsTest : public testing::Test {
     return ended;
   }
 
-  /// The next window of an alarm, in which the machine is busy, or somebody silent.
-  void addBusy(const Suspect& blamed, const Busy& busy) {
-    Verdict next = verdict(kAlarm, {blamed});
+  /// The next window of an alarm, in which the machine is busy, or some are silent together, who
+  /// are no suspects then.
+  void addBusy(const Busy& busy, const std::vector<Suspect>& suspects = {}) {
+    Verdict next = verdict(kAlarm, suspects);
+    next.evidence = "busy";
     next.busy = busy;
     add(next);
   }
-  void addSilent(const Silent& silent) {
-    Verdict next = verdict(kAlarm, {suspect(1, Kind::kDied)});
+  void addSilent(const Silent& silent, const std::vector<Suspect>& suspects = {}) {
+    Verdict next = verdict(kAlarm, suspects);
     next.silent = silent;
     add(next);
   }
@@ -128,13 +130,17 @@ TEST_F(AlarmsTest, ASuspicionThatAnAlarmLeavesIsAboutTheSame) {
 }
 
 TEST_F(AlarmsTest, WhereTheMachineIsBusyNobodyIsToBlame) {
-  addBusy(suspect(1, Kind::kLate), {12, 26});
+  addBusy({12, 26});
   expectBlamed("", Kind::kBusyMachine);
   EXPECT_EQ(alarms_.standing()->busy->late, 12U);
+  alarms_ = {};
+  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  addBusy({12, 26});
+  expectBlamed("", Kind::kBusyMachine);
 }
 
 TEST_F(AlarmsTest, ABusyMachineDoesNotExcuseWhoDied) {
-  addBusy(suspect(1, Kind::kDied), {12, 26});
+  addBusy({12, 26}, {suspect(1, Kind::kDied)});
   expectBlamed("/b", Kind::kDied);
   EXPECT_TRUE(alarms_.standing()->busy);
 }
@@ -149,12 +155,28 @@ TEST_F(AlarmsTest, WhatBeganBeforeAnExcuseStaysWhatItWas) {
   }
   alarms_ = {};
   add(verdict(kAlarm, {suspect(1, Kind::kSlow)}));
-  addBusy(suspect(1, Kind::kSlow), {5, 9, 0, later});
+  addBusy({5, 9, 0, later});
   expectBlamed("/b", Kind::kSlow);
 }
 
+TEST_F(AlarmsTest, WhoWasMissedBeforeTheCulpritIsFoundToBeIt) {
+  Suspect victim = suspect(1, Kind::kDied);
+  victim.onset = kStart;
+  add(verdict(kAlarm, {victim}));
+  Suspect root = suspect(0, Kind::kDied);
+  root.abnormal = true;
+  root.reason.usual_longest = 1;
+  for (const double before : {0.5, 1.5}) {
+    root.onset = kStart - static_cast<std::int64_t>(before * 1e9);
+    Verdict next = verdict(kAlarm, {root, victim});
+    next.new_suspects = {root};
+    add(next);
+    expectBlamed(before < 1 ? "/b" : "/a", Kind::kDied);
+  }
+}
+
 TEST_F(AlarmsTest, WhoIsDeadOnceTheMachineIsFreeIsToBlame) {
-  addBusy(suspect(1, Kind::kLate), {12, 26});
+  addBusy({12, 26});
   EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
   Suspect dead = suspect(0, Kind::kDied);
   add(verdict(kAlarm, {dead}));

@@ -61,7 +61,6 @@ struct Tuning {
   double shortest_stall = 0.05;
   double longest_stall = 0.7;
   double between_stalls = 30;
-  double still_busy_share = 0.5;
   double starved = 0.5;
   double usual_load_time = 600;
   double longest_starvation = 60;

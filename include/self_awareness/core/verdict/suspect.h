@@ -121,6 +121,9 @@ struct Suspect {
   /// training. With the paper's detector, which knows no limit of a single event type, the latter
   /// only.
   bool abnormal = false;
+  /// Since when what is wrong with it has been so, as far as that is known [ns]: of who has not
+  /// come, the last time that it did.
+  std::int64_t onset = 0;
   /// When the alarm or the suspicion that stands first named its component: end of the window
   /// [ns].
   std::int64_t since = 0;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -68,6 +69,8 @@ class ChannelState {
   /// Sets the evidence of its tracks at the end of a window; 0: none.
   /// @param evidence by track of the model
   virtual void closeWindow(const Heard& heard, std::vector<double>& evidence) = 0;
+  /// Since when what a track sees has been so [ns]; none: it is as long ago as it looks back.
+  virtual std::optional<std::int64_t> onset(std::size_t /*track*/) const { return std::nullopt; }
   /// Adds those of its tracks that do not count until they have been as in training.
   virtual void addDisarmed(std::vector<std::size_t>& /*tracks*/) const {}
   /// Whether further windows would say nothing new of a track that is beyond its limit.

@@ -75,15 +75,18 @@ struct DelaySum {
 
   double value = 0;
   double cap = kMost;
-  double regime = 0;  ///< mean surprise of the last minutes
+  double regime = 0;       ///< mean surprise of the last minutes
+  std::int64_t since = 0;  ///< stamp of the first delay since it was 0 last [ns]
 
   /// Takes in a delay.
+  /// @param stamp of the event that it ends with [ns]
   /// @param count 1, or 0 if it does not count
   /// @param sign -1 if the delay only makes up for one before it, else 1
   /// @param share_of_regime DelayNumbers::shareOfRegime() of the time since the `to` before
   /// @return what was added
-  double add(double surprise, double count, double sign, double share_of_regime,
-             const DelayNumbers& numbers) {
+  double add(std::int64_t stamp, double surprise, double count, double sign,
+             double share_of_regime, const DelayNumbers& numbers) {
+    since = value > 0 ? since : stamp;
     const double step = (surprise - std::max(regime, 0.0) - numbers.drift) * (sign * count);
     value = std::max(std::min(value + step, cap), 0.0);
     regime += (surprise - regime) * (share_of_regime * count);

@@ -81,6 +81,9 @@ class OwedState : public ChannelState {
     }
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  std::optional<std::int64_t> onset(std::size_t track) const override {
+    return answerOf(track).since;
+  }
   void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
                Suspect& suspect) const override;
 
@@ -97,6 +100,10 @@ class OwedState : public ChannelState {
     std::vector<std::uint32_t> answered;
   };
 
+  const Answer& answerOf(std::size_t track) const {
+    return *std::find_if(owed_.begin(), owed_.end(),
+                         [track](const Answer& each) { return each.track == track; });
+  }
   static double waiting(const Answer& answer, const Heard& heard) {
     return answer.in_requests ? answer.requests : toSeconds(heard.windowEnd() - answer.since);
   }
@@ -133,16 +140,15 @@ void OwedState::explain(std::size_t track, const Heard& heard, const RecentEvent
   Reason& reason = suspect.reason;
   reason.kind = Kind::kDied;
   reason.after = toString(model_.vocabulary().at(model_.tracks()[track].from));
-  const auto answer = std::find_if(owed_.begin(), owed_.end(),
-                                   [track](const Answer& each) { return each.track == track; });
+  const Answer& answer = answerOf(track);
   char text[60];
-  if (answer->in_requests) {
+  if (answer.in_requests) {
     reason.unit = unit::kRequests;
-    reason.value = static_cast<double>(answer->requests);
-    std::snprintf(text, sizeof text, "has not come after the last %u ", answer->requests);
+    reason.value = static_cast<double>(answer.requests);
+    std::snprintf(text, sizeof text, "has not come after the last %u ", answer.requests);
   } else {
     reason.unit = unit::kSeconds;
-    reason.value = answer->requests > 0 ? waiting(*answer, heard) : 0;
+    reason.value = answer.requests > 0 ? waiting(answer, heard) : 0;
     reason.lasted = reason.value;
     std::snprintf(text, sizeof text, "has not come for %.2f s after ", reason.value);
   }

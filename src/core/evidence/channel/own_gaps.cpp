@@ -28,7 +28,8 @@ class OwnGapsState : public ChannelState {
     }
     OfType& own = gaps_[number];
     const std::int64_t gap = arrival.stamp - arrival.last_stamp;
-    const double surprise = step(own.sum, own.catching_up, number, gap, arrival.stalled).surprise;
+    const double surprise =
+        step(own.sum, own.catching_up, number, arrival.stamp, gap, arrival.stalled).surprise;
     if (own.arming.armed() || arrival.stalled) {
       return;
     }
@@ -54,6 +55,9 @@ class OwnGapsState : public ChannelState {
   void restart() override;
   void capAt(const std::vector<double>& limits) override;
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  std::optional<std::int64_t> onset(std::size_t track) const override {
+    return gaps_[expected_.numberOf(track)].sum.since;
+  }
   void addDisarmed(std::vector<std::size_t>& tracks) const override {
     for (std::size_t number = 0; number < gaps_.size(); ++number) {
       if (gaps_[number].arming.failed() && !gaps_[number].arming.armed()) {
@@ -75,11 +79,11 @@ class OwnGapsState : public ChannelState {
     double added = 0;
   };
 
-  Step step(DelaySum& sum, CatchingUp& catching_up, std::size_t number, std::int64_t gap,
-            bool stalled) const {
+  Step step(DelaySum& sum, CatchingUp& catching_up, std::size_t number, std::int64_t stamp,
+            std::int64_t gap, bool stalled) const {
     const double surprise = expected_.surprise(number)(gap);
     const bool makes_up = catching_up.add(static_cast<double>(gap), numbers_) && surprise > 0;
-    return {surprise, sum.add(surprise, stalled ? 0.0 : 1.0, makes_up ? -1.0 : 1.0,
+    return {surprise, sum.add(stamp, surprise, stalled ? 0.0 : 1.0, makes_up ? -1.0 : 1.0,
                               numbers_.shareOfRegime(gap), numbers_)};
   }
 
@@ -147,7 +151,7 @@ void OwnGapsState::explain(std::size_t track, const Heard& heard, const RecentEv
   for (const RecentEvents::Remembered& event : events.of(id, id)) {
     if (last) {
       const std::int64_t gap = event.stamp - *last;
-      const Step added = step(sum, catching_up, number, gap, event.stalled);
+      const Step added = step(sum, catching_up, number, event.stamp, gap, event.stalled);
       seen.push_back({event.stamp, static_cast<double>(gap), added.added});
     }
     last = event.stamp;

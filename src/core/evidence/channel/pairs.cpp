@@ -34,7 +34,8 @@ class PairsState : public ChannelState {
       // one pause many times. No branch, since the processor cannot predict which one is first.
       const bool first = numbers[pair.from] >= arrival.last;
       const double surprise = (*pair.surprise)(arrival.stamp - stamps[pair.from]);
-      pair.sum.add(surprise, first && !arrival.stalled ? 1.0 : 0.0, 1.0, share, numbers_);
+      pair.sum.add(arrival.stamp, surprise, first && !arrival.stalled ? 1.0 : 0.0, 1.0, share,
+                   numbers_);
       if (!pair.armed) {
         arm(number, numbers[pair.from] > 0, first && !arrival.stalled, surprise);
       }
@@ -55,6 +56,9 @@ class PairsState : public ChannelState {
   void restart() override;
   void capAt(const std::vector<double>& limits) override;
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  std::optional<std::int64_t> onset(std::size_t track) const override {
+    return pairOf(track).sum.since;
+  }
   void addDisarmed(std::vector<std::size_t>& tracks) const override {
     for (std::uint32_t number = 0; number < pairs_.size(); ++number) {
       if (!pairs_[number].armed) {
@@ -82,6 +86,10 @@ class PairsState : public ChannelState {
   /// Takes in a delay of a pair that is not armed. Of one whose other event type was never heard,
   /// what was added to the sum is taken back here: so the many others need no check.
   void arm(std::uint32_t number, bool heard, bool first, double surprise);
+  const Pair& pairOf(std::size_t track) const {
+    const auto place = std::find(track_of_.begin(), track_of_.end(), track);
+    return pairs_[static_cast<std::size_t>(place - track_of_.begin())];
+  }
   void clear(std::uint32_t number) {
     pairs_[number].sum.clear();
     pairs_[number].armed = false;
@@ -167,8 +175,7 @@ void PairsState::explain(std::size_t track, const Heard& heard, const RecentEven
   const Model& model = expected_.model();
   const EventId to = suspect.id;
   const EventId from = model.tracks()[track].from;
-  const auto place = std::find(track_of_.begin(), track_of_.end(), track);
-  const Pair& pair = pairs_[static_cast<std::size_t>(place - track_of_.begin())];
+  const Pair& pair = pairOf(track);
   DelaySum sum;
   sum.cap = pair.sum.cap;
   std::vector<SeenDelay> seen;
@@ -182,7 +189,7 @@ void PairsState::explain(std::size_t track, const Heard& heard, const RecentEven
     if (since) {
       const std::int64_t delay = std::max<std::int64_t>(event.stamp - *since, 0);
       const double step =
-          sum.add((*pair.surprise)(delay), event.stalled ? 0.0 : 1.0, 1.0,
+          sum.add(event.stamp, (*pair.surprise)(delay), event.stalled ? 0.0 : 1.0, 1.0,
                   numbers_.shareOfRegime(last ? event.stamp - *last : 0), numbers_);
       seen.push_back({event.stamp, static_cast<double>(delay), step});
       since.reset();

@@ -104,6 +104,13 @@ bool Scorer::isCertain(std::size_t track, double limit) const {
   return stateOf(track).isCertain(track, limit, heard_);
 }
 
+std::optional<std::int64_t> Scorer::onset(std::size_t track) const {
+  const Finding finding = model_->finding(track);
+  return finding == Finding::kSilent || finding == Finding::kAbsent
+             ? heard_.lastSeen(model_->tracks()[track].to)
+             : stateOf(track).onset(track);
+}
+
 void Scorer::explain(std::size_t track, const RecentEvents& events, Suspect& suspect) const {
   stateOf(track).explain(track, heard_, events, suspect);
   if (suspect.reason.kind == Kind::kDied && heard_.hasSeen(suspect.id)) {

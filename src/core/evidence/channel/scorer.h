@@ -81,6 +81,9 @@ class Scorer {
   std::vector<std::size_t> disarmed() const;
   /// Whether a track that is beyond its limit is so beyond all doubt.
   bool isCertain(std::size_t track, double limit) const;
+  /// Since when what a track sees has been so [ns]: a silence since the last event, a sum since it
+  /// was 0 last. None: a level, which looks back for some time.
+  std::optional<std::int64_t> onset(std::size_t track) const;
   /// Why an event type is a suspect, as a track says it.
   void explain(std::size_t track, const RecentEvents& events, Suspect& suspect) const;
 

@@ -121,17 +121,17 @@ TEST(DelaySurprise, AGapMayDifferByMoreThanAnAnswer) {
 TEST(DelaySum, NeverFallsBelowZeroNorGrowsBeyondItsCap) {
   const DelayNumbers numbers{Tuning{}};
   DelaySum sum;
-  EXPECT_DOUBLE_EQ(sum.add(0.5, 1, 1, 0, numbers), -0.5) << "the drift is 1";
+  EXPECT_DOUBLE_EQ(sum.add(0, 0.5, 1, 1, 0, numbers), -0.5) << "the drift is 1";
   EXPECT_EQ(sum.value, 0);
-  EXPECT_DOUBLE_EQ(sum.add(4, 1, 1, 0, numbers), 3);
+  EXPECT_DOUBLE_EQ(sum.add(0, 4, 1, 1, 0, numbers), 3);
   EXPECT_DOUBLE_EQ(sum.value, 3);
-  EXPECT_DOUBLE_EQ(sum.add(4, 0, 1, 0, numbers), 0) << "it does not count";
-  EXPECT_DOUBLE_EQ(sum.add(3, 1, -1, 0, numbers), -2) << "it makes up for the one before";
+  EXPECT_DOUBLE_EQ(sum.add(0, 4, 0, 1, 0, numbers), 0) << "it does not count";
+  EXPECT_DOUBLE_EQ(sum.add(0, 3, 1, -1, 0, numbers), -2) << "it makes up for the one before";
   EXPECT_DOUBLE_EQ(sum.value, 1);
   sum.capAt(10, numbers);
   EXPECT_FALSE(sum.isAbnormal(numbers));
   for (int k = 0; k < 10; ++k) {
-    sum.add(6, 1, 1, 0, numbers);
+    sum.add(0, 6, 1, 1, 0, numbers);
   }
   EXPECT_DOUBLE_EQ(sum.value, 15);
   EXPECT_TRUE(sum.isAbnormal(numbers));
@@ -142,7 +142,7 @@ TEST(DelaySum, WithoutALimitItIsNeverAbnormal) {
   DelaySum sum;
   sum.capAt(std::nan(""), numbers);
   for (int k = 0; k < 1000; ++k) {
-    sum.add(6, 1, 1, 0, numbers);
+    sum.add(0, 6, 1, 1, 0, numbers);
   }
   EXPECT_EQ(sum.value, DelaySum::kMost);
 }
@@ -153,11 +153,12 @@ TEST(DelaySum, IsRelativeToTheRegimeOfTheLastMinutes) {
   EXPECT_EQ(numbers.shareOfRegime(-kSecond), 0);
   EXPECT_EQ(numbers.shareOfRegime(1000 * kSecond), 1);
   DelaySum sum;
-  sum.add(4, 1, 1, 0.1, numbers);
+  sum.add(0, 4, 1, 1, 0.1, numbers);
   EXPECT_DOUBLE_EQ(sum.regime, 0.4);
-  EXPECT_DOUBLE_EQ(sum.add(4, 1, 1, 0, numbers), 2.6);
+  EXPECT_DOUBLE_EQ(sum.add(0, 4, 1, 1, 0, numbers), 2.6);
   sum.regime = -2;
-  EXPECT_DOUBLE_EQ(sum.add(4, 1, 1, 0, numbers), 3) << "what is more usual than usual is no debt";
+  EXPECT_DOUBLE_EQ(sum.add(0, 4, 1, 1, 0, numbers), 3)
+      << "what is more usual than usual is no debt";
 }
 
 TEST(CatchingUp, IsAGapThatIsShorterWhileItsTypeIsBehind) {

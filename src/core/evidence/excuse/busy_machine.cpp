@@ -1,0 +1,194 @@
+#include "core/evidence/excuse/busy_machine.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "core/evidence/channel/channel.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+// Share of the last kRateSpan. Processes that wait for less are forgiven, and not spoken of: that
+// comes and goes wherever more is begun at once than there are processors.
+constexpr double kNearlyAll = 0.9;
+
+// A load that grows makes one after the other late, and each of them now and then. Who was late
+// longer ago had another reason.
+constexpr std::int64_t kOnset = 5 * kRateSpan;  // [ns]
+
+/// Whether what a track says is that its type came late, or too seldom: who has no time does not
+/// send too often.
+bool isOfLate(std::size_t track, const Scorer& scorer, const RecentEvents& events) {
+  const Track& watched = scorer.model().tracks()[track];
+  if (watched.channel->hasShareOfItsOwn()) {
+    return false;
+  }
+  Suspect suspect;
+  suspect.id = watched.to;
+  scorer.explain(track, events, suspect);
+  return suspect.reason.kind != Kind::kFast && suspect.reason.kind != Kind::kEarly;
+}
+
+}  // namespace
+
+BusyMachine::BusyMachine(std::shared_ptr<const Model> model, const Explanation& explanation)
+    : model_(std::move(model)),
+      explanation_(explanation),
+      lateness_(model_->components().size()) {}
+
+void BusyMachine::restart() {
+  busy_since_.reset();
+  lateness_.assign(lateness_.size(), {});
+  starved_since_.reset();
+}
+
+std::optional<Busy> BusyMachine::excuse(std::vector<Excess>& excesses, const Scorer& scorer,
+                                        const RecentEvents& events) {
+  std::optional<Busy> busy = late(excesses, scorer, events);
+  const Heard& heard = scorer.heard();
+  if (const auto since = starvedSince(heard)) {
+    busy = busy.value_or(Busy{0, 0, 0, *since});
+    busy->starved = toSeconds(heard.windowEnd() - *since);
+  }
+  for (Excess& excess : excesses) {
+    if (busy && excess.excuse == Excuse::kNone && covers(excess, *busy, heard)) {
+      excess.excuse = Excuse::kBusy;
+    }
+  }
+  return busy;
+}
+
+bool BusyMachine::covers(const Excess& excess, const Busy& busy, const Heard& heard) const {
+  const Track& watched = model_->tracks()[excess.track];
+  if (excess.onset < busy.since || watched.channel->hasShareOfItsOwn()) {
+    return false;
+  }
+  return !isAbsence(model_->finding(excess.track)) || mayHold(watched.to, heard);
+}
+
+bool BusyMachine::mayHold(EventId id, const Heard& heard) const {
+  return heard.silence(id) <= model_->longestGap(id) + kRateSpan;
+}
+
+std::optional<std::int64_t> BusyMachine::starvedSince(const Heard& heard) {
+  const std::int64_t waited = heard.starved();
+  if (static_cast<double>(waited) < kNearlyAll * static_cast<double>(kRateSpan)) {
+    starved_since_.reset();
+  } else {
+    starved_since_ = starved_since_.value_or(heard.windowEnd() - waited);
+  }
+  return starved_since_;
+}
+
+std::optional<Busy> BusyMachine::late(const std::vector<Excess>& excesses, const Scorer& scorer,
+                                      const RecentEvents& events) {
+  const std::int64_t now = scorer.heard().windowEnd();
+  std::vector<bool> silent(lateness_.size(), false);
+  for (const Excess& excess : excesses) {
+    if (model_->finding(excess.track) == Finding::kSilent && excess.share > 1) {
+      // Silences of a busy machine end soon.
+      silent[excess.component] = silent[excess.component] || !busy_since_ ||
+                                 !mayHold(model_->tracks()[excess.track].to, scorer.heard());
+      lateness_[excess.component].silent = now;
+    }
+  }
+  noteLate(excesses, scorer, events);
+  Busy busy;
+  std::vector<std::size_t> late;
+  std::vector<std::int64_t> since;
+  for (std::size_t component = 0; component < lateness_.size(); ++component) {
+    if (!silent[component] && isRecent(lateness_[component].last, now)) {
+      late.push_back(component);
+      since.push_back(lateness_[component].since);
+    }
+  }
+  std::set<std::size_t> heard;
+  for (EventId id = 0; id < model_->size() && !late.empty(); ++id) {
+    if (scorer.heard().hasSeen(id)) {
+      heard.insert(model_->componentIndex(id));
+    }
+  }
+  busy.late = late.size();
+  busy.components = heard.size();
+  const Tuning& tuning = model_->tuning();
+  // Where more are silent, something else is wrong.
+  const bool many =
+      static_cast<double>(busy.late) >= tuning.fewest_busy &&
+      static_cast<double>(busy.late) * tuning.busy_one_in >=
+          static_cast<double>(busy.components) &&
+      static_cast<std::ptrdiff_t>(busy.late) >= std::count(silent.begin(), silent.end(), true);
+  const bool is_abnormal = std::any_of(excesses.begin(), excesses.end(),
+                                       [](const Excess& excess) { return excess.share > 1; });
+  if (!many || (!busy_since_ && !(is_abnormal && areUnrelated(late, silent, excesses)))) {
+    busy_since_.reset();
+    return std::nullopt;
+  }
+  if (!busy_since_) {
+    const auto middle = since.begin() + static_cast<std::ptrdiff_t>(since.size() / 2);
+    std::nth_element(since.begin(), middle, since.end());
+    busy_since_ = *middle - kOnset;
+  }
+  busy.since = *busy_since_;
+  return busy;
+}
+
+bool BusyMachine::isRecent(std::int64_t stamp, std::int64_t now) {
+  return stamp != kNever && now - stamp <= kOnset;
+}
+
+void BusyMachine::noteLate(const std::vector<Excess>& excesses, const Scorer& scorer,
+                           const RecentEvents& events) {
+  const std::int64_t now = scorer.heard().windowEnd();
+  for (const Excess& excess : excesses) {
+    Lateness& lateness = lateness_[excess.component];
+    const Track& watched = model_->tracks()[excess.track];
+    // What looks back to a silence says what that was, and nothing of who is back.
+    const bool is_back =
+        lateness.silent != kNever && now - lateness.silent < watched.channel->looksBack();
+    // What was late for long is news no more, but who is held up falls silent now and then.
+    const bool is_held_up = busy_since_ && model_->finding(excess.track) == Finding::kSilent &&
+                            mayHold(watched.to, scorer.heard());
+    if (excess.share <= model_->tuning().near_limit ||
+        !(is_held_up || (!is_back && !isAbsence(model_->finding(excess.track)) &&
+                         isOfLate(excess.track, scorer, events)))) {
+      continue;
+    }
+    if (!isRecent(lateness.last, now)) {
+      lateness.since = excess.onset;
+      lateness.after.clear();
+    }
+    lateness.last = now;
+    if (model_->finding(excess.track) == Finding::kBetween) {
+      lateness.after.insert(model_->componentIndex(watched.from));
+    }
+  }
+}
+
+bool BusyMachine::areUnrelated(const std::vector<std::size_t>& late,
+                               const std::vector<bool>& silent,
+                               const std::vector<Excess>& excesses) const {
+  const Explanation::Leads leads = explanation_.leads(excesses);
+  // What comes late of itself, or after who is late for that reason, is not.
+  const auto isVictim = [&](std::size_t component, std::size_t cause) {
+    const std::set<std::size_t>& after = lateness_[component].after;
+    return explanation_.follows(component, cause, leads) &&
+           std::none_of(after.begin(), after.end(), [&](std::size_t other) {
+             return other == component || other == cause ||
+                    explanation_.follows(other, cause, leads);
+           });
+  };
+  for (std::size_t cause = 0; cause < silent.size(); ++cause) {
+    if (silent[cause] || std::binary_search(late.begin(), late.end(), cause)) {
+      const auto others = std::count_if(late.begin(), late.end(), [&](std::size_t component) {
+        return component != cause && !isVictim(component, cause);
+      });
+      if (static_cast<double>(others + 1) < model_->tuning().fewest_busy) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace self_awareness::core::evidence

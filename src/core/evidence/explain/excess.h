@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/evidence/channel/scorer.h"
+#include "self_awareness/core/evidence/channel/model.h"
+
+namespace self_awareness::core::evidence {
+
+/// Why no component is to blame for what is unusual.
+enum class Excuse {
+  kNone,
+  kAccepted,   ///< somebody said that it is normal
+  kNewMode,    ///< others stopped with it, which do not hear each other
+  kAllSilent,  ///< all fell silent with it, or all of its computer
+  kBusy        ///< the machine has too little time for all
+};
+
+/// That something is unusual: who, what, since when, how much (docs/method.md, section 6).
+struct Excess {
+  std::size_t track = 0;      ///< of the model: its channel says what is wrong with its `to`
+  std::size_t component = 0;  ///< that `to` comes from, by its number
+  std::int64_t onset = 0;     ///< since when what the channel sees has been so [ns]
+  double share = 0;           ///< of its limit; above 1, it alone is abnormal
+  Excuse excuse = Excuse::kNone;
+};
+
+/// Keeps what is unusual from one window to the next.
+class Excesses {
+ public:
+  explicit Excesses(std::shared_ptr<const Model> model);
+
+  /// Takes in a window.
+  /// @param shares of their limits that the tracks of the model have reached
+  /// @param scorer that has closed the window
+  /// @return what is unusual in it, none of it excused, by track; valid until the next call
+  std::vector<Excess>& closeWindow(const std::vector<double>& shares, const Scorer& scorer);
+  /// Forgets what was unusual.
+  void restart() { excesses_.clear(); }
+
+ private:
+  std::shared_ptr<const Model> model_;
+  std::vector<Excess> excesses_;
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,241 @@
+#include "core/evidence/explain/explanation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+#include <tuple>
+#include <utility>
+
+#include "core/evidence/explain/root_first.h"
+
+namespace self_awareness::core::evidence {
+
+Explanation::Explanation(std::shared_ptr<const Model> model,
+                         std::shared_ptr<const Upstream> upstream)
+    : model_(std::move(model)), upstream_(std::move(upstream)), tuning_(model_->tuning()) {
+  for (const Track& track : model_->tracks()) {
+    follows_.push_back(follows(track));
+  }
+}
+
+bool Explanation::follows(const Track& track) const {
+  if (model_->component(track.from) == model_->component(track.to) ||
+      model_->vocabulary().tellsMode(track.from)) {
+    return false;
+  }
+  const double period = std::min(model_->meanGap(track.from), model_->meanGap(track.to));
+  return model_->usualDelay(track.from, track.to, 0.5) < period / 2;
+}
+
+Explanation::Leads Explanation::leads(const std::vector<Excess>& excesses) const {
+  Leads usual;
+  Leads unusual;
+  auto excess = excesses.begin();
+  for (std::size_t track = 0; track < follows_.size(); ++track) {
+    excess = std::find_if(excess, excesses.end(),
+                          [track](const Excess& each) { return each.track >= track; });
+    if (follows_[track]) {
+      const bool is_usual = excess == excesses.end() || excess->track != track;
+      const Track& relation = model_->tracks()[track];
+      (is_usual ? usual : unusual)
+          .emplace(model_->componentIndex(relation.from), model_->componentIndex(relation.to));
+    }
+  }
+  Leads leads;
+  for (const auto& [leader, follower] : usual) {
+    if (unusual.count({leader, follower}) == 0 && usual.count({follower, leader}) == 0) {
+      leads.emplace(leader, follower);
+    }
+  }
+  return leads;
+}
+
+std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
+                                           const Scorer& scorer,
+                                           const RecentEvents& events) const {
+  std::vector<Suspect> suspects;
+  if (std::all_of(excesses.begin(), excesses.end(),
+                  [](const Excess& excess) { return excess.excuse != Excuse::kNone; })) {
+    return suspects;
+  }
+  const Window window{scorer, events, leads(excesses)};
+  std::vector<Accused> accused(model_->components().size());
+  for (const Excess& excess : excesses) {
+    if (excess.excuse == Excuse::kNone) {
+      accuse(excess, window, accused);
+    }
+  }
+  for (EventId id = 0; id < model_->size(); ++id) {
+    Accused& each = accused[model_->componentIndex(id)];
+    each.alive = each.alive || (scorer.heard().hasSeen(id) && each.main != nullptr &&
+                                scorer.heard().stamps()[id] > each.due);
+  }
+  for (const Accused& each : order(std::move(accused), window)) {
+    if (suspects.size() < kMostSuspects || each.abnormal) {
+      Suspect suspect = suspectOf(*each.main, window);
+      suspect.abnormal = each.abnormal;
+      if (each.abnormal || !isUsual(suspect)) {
+        suspects.push_back(std::move(suspect));
+      }
+    }
+  }
+  return suspects;
+}
+
+Suspect Explanation::suspectOf(const Excess& excess, const Window& window) const {
+  Suspect suspect;
+  suspect.id = trackOf(excess).to;
+  suspect.component = model_->components()[excess.component];
+  suspect.onset = excess.onset;
+  window.scorer.explain(excess.track, window.events, suspect);
+  return suspect;
+}
+
+bool Explanation::isAbsent(const Excess& excess, const Window& window) const {
+  const Finding finding = model_->finding(excess.track);
+  if (excess.share > 1 || finding != Finding::kSilent) {
+    return isAbsence(finding) && excess.share > tuning_.near_limit;
+  }
+  const EventId id = trackOf(excess).to;
+  const std::int64_t silence = window.scorer.heard().listenedFor(id);
+  return silence > model_->longestGap(id) &&
+         model_->logSurvival(id, silence) < std::log(tuning_.rare_silence);
+}
+
+void Explanation::accuse(const Excess& excess, const Window& window,
+                         std::vector<Accused>& accused) const {
+  const Track& track = trackOf(excess);
+  const Finding finding = model_->finding(excess.track);
+  const double share = std::min(excess.share, tuning_.most_share);
+  Accused& later = accused[excess.component];
+  Wrong wrong = Wrong::kOther;
+  if (isAbsence(finding)) {
+    // An age that is usual has some share of its limit, too, and so has a request of now.
+    if (!isAbsent(excess, window)) {
+      return;
+    }
+    wrong = Wrong::kAbsent;
+  } else if (finding != Finding::kBetween ||
+             model_->component(track.from) == model_->component(track.to)) {
+    wrong = excess.share > tuning_.near_limit ? Wrong::kOwn : Wrong::kOther;
+  } else {
+    Accused& other = accused[model_->componentIndex(track.from)];
+    // That what comes before it is late makes its delays shorter.
+    if (suspectOf(excess, window).reason.kind == Kind::kEarly) {
+      other.sum += share;
+      later.sum -= (1 - tuning_.share_of_other) * share;
+    } else {
+      other.sum += tuning_.share_of_other * share;
+      wrong = Wrong::kLate;
+    }
+  }
+  later.component = excess.component;
+  later.sum += share;
+  later.abnormal = later.abnormal || excess.share > 1;
+  // A silence that is abnormal says it all. Lost messages make gaps irregular, and not the other
+  // way round.
+  const auto rank = [&](const Excess& each, Wrong how) {
+    const bool is_silent =
+        how == Wrong::kAbsent && each.share > 1 && model_->finding(each.track) == Finding::kSilent;
+    const bool is_lossy = trackOf(each).channel->kind() == Kind::kLossy;
+    return std::tuple(!is_silent, std::max(how, Wrong::kOwn), !is_lossy, -each.share);
+  };
+  if (later.main == nullptr || rank(excess, wrong) < rank(*later.main, later.wrong)) {
+    later.main = &excess;
+    later.wrong = wrong;
+  }
+  if (wrong == Wrong::kAbsent) {
+    const double usual = finding == Finding::kUnanswered ? 0 : model_->meanGap(track.to);
+    later.due = std::min(later.due, excess.onset + static_cast<std::int64_t>(usual));
+    later.sure = later.sure || excess.share > 1;
+  }
+}
+
+std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accused,
+                                                     const Window& window) const {
+  accused.erase(std::remove_if(accused.begin(), accused.end(),
+                               [](const Accused& each) { return each.main == nullptr; }),
+                accused.end());
+  // Who is absent, but not beyond its limit, is the root of who is, or hardly to blame.
+  const std::vector<Accused> all = accused;
+  for (Accused& each : accused) {
+    if (each.wrong == Wrong::kAbsent && !each.sure &&
+        std::none_of(all.begin(), all.end(), [&](const Accused& victim) {
+          return victim.abnormal && isRoot(each, victim, window.leads);
+        })) {
+      each.wrong = Wrong::kOther;
+    }
+  }
+  std::stable_sort(accused.begin(), accused.end(), [](const Accused& a, const Accused& b) {
+    const auto of = [](const Accused& each) {
+      return each.wrong == Wrong::kAbsent
+                 ? std::tuple(each.wrong, each.alive, each.due, -each.sum)
+                 : std::tuple(each.wrong, false, std::int64_t{0}, -each.sum);
+    };
+    return of(a) < of(b);
+  });
+  std::vector<Accused> ordered;
+  for (auto first = accused.begin(); first != accused.end();) {
+    const auto last = std::find_if(
+        first, accused.end(), [&](const Accused& each) { return each.wrong != first->wrong; });
+    const std::vector<Accused> group = rootFirst({first, last}, window);
+    ordered.insert(ordered.end(), group.begin(), group.end());
+    first = last;
+  }
+  // Who is at half its rate makes who follows it silent, though this owes it nothing.
+  const auto absent_end = std::find_if(ordered.begin(), ordered.end(), [](const Accused& each) {
+    return each.wrong != Wrong::kAbsent;
+  });
+  const std::vector<Accused> absent(ordered.begin(), absent_end);
+  std::stable_partition(ordered.begin(), ordered.end(), [&](const Accused& each) {
+    return each.wrong == Wrong::kOwn &&
+           std::any_of(absent.begin(), absent.end(), [&](const Accused& victim) {
+             return isRoot(each, victim, window.leads) &&
+                    owesNothing(trackOf(*victim.main).to, trackOf(*each.main).to, window);
+           });
+  });
+  return ordered;
+}
+
+std::vector<Explanation::Accused> Explanation::rootFirst(const std::vector<Accused>& accused,
+                                                         const Window& window) const {
+  std::vector<std::size_t> places(accused.size());
+  std::iota(places.begin(), places.end(), 0);
+  std::vector<Accused> ordered;
+  for (const std::size_t next :
+       evidence::rootFirst(places, [&](std::size_t root, std::size_t victim) {
+         return isRoot(accused[root], accused[victim], window.leads);
+       })) {
+    ordered.push_back(accused[next]);
+  }
+  return ordered;
+}
+
+bool Explanation::isRoot(const Accused& root, const Accused& victim, const Leads& leads) const {
+  const std::size_t from = root.component;
+  const std::size_t to = victim.component;
+  // Who fell silent only when the other one should have come is not why it did not.
+  const bool too_late = root.wrong == Wrong::kAbsent && victim.wrong == Wrong::kAbsent &&
+                        root.main->onset > victim.due;
+  return !too_late && (upstream_->isUpstream(from, to) ||
+                       (leads.count({from, to}) > 0 && !upstream_->isUpstream(to, from)));
+}
+
+bool Explanation::owesNothing(EventId follower, EventId leader, const Window& window) const {
+  const double gap = model_->meanGap(leader);
+  const double usual = std::max(1.0, std::round(model_->meanGap(follower) / gap));
+  const auto since = static_cast<double>(window.events.since(leader, follower));
+  return since < usual ||
+         (since == usual && static_cast<double>(window.scorer.heard().age(leader)) < gap / 2);
+}
+
+bool Explanation::isUsual(const Suspect& suspect) const {
+  const Reason& reason = suspect.reason;
+  if (reason.kind == Kind::kDied) {
+    return reason.after.empty() && reason.value <= toSeconds(model_->longestGap(suspect.id));
+  }
+  return reason.usual_shortest <= reason.value && reason.value <= reason.usual_longest;
+}
+
+}  // namespace self_awareness::core::evidence

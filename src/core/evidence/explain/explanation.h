@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "core/evidence/channel/scorer.h"
+#include "core/evidence/explain/excess.h"
+#include "core/evidence/watch/recent_events.h"
+#include "core/evidence/watch/upstream.h"
+#include "self_awareness/core/verdict/suspect.h"
+
+namespace self_awareness::core::evidence {
+
+/// Says who is to blame for what is unusual (docs/method.md, section 6): who does not come before
+/// who is unusual of itself, that before who comes late after another one. Of each of these, who
+/// is upstream of others, or followed by them as usual, comes first.
+class Explanation {
+ public:
+  /// Pairs of components, by number, of which the second follows the first, and does so as usual:
+  /// what is wrong with both of them began with the first. It needs no graph.
+  using Leads = std::set<std::pair<std::size_t, std::size_t>>;
+
+  /// @param upstream may be empty: only what usually follows what then says who is the root
+  Explanation(std::shared_ptr<const Model> model, std::shared_ptr<const Upstream> upstream);
+
+  /// @param excesses all that is unusual in the window that the scorer closed last
+  /// @param events of the scorer's recording
+  /// @return one suspect for each component with an excess that is not excused, the most likely
+  /// first: at most kMostSuspects, and further ones whose evidence alone is abnormal. Nobody whose
+  /// numbers are usual
+  std::vector<Suspect> suspects(const std::vector<Excess>& excesses, const Scorer& scorer,
+                                const RecentEvents& events) const;
+  /// @param excesses all that is unusual
+  Leads leads(const std::vector<Excess>& excesses) const;
+  /// Whether a component gets messages of another one, or, where nobody knows who hears whom,
+  /// follows it.
+  bool follows(std::size_t component, std::size_t other, const Leads& leads) const {
+    return upstream_->empty() ? leads.count({other, component}) > 0
+                              : upstream_->isUpstream(other, component);
+  }
+
+ private:
+  /// What is wrong with a component, the likeliest to be a cause first.
+  enum class Wrong { kAbsent, kOwn, kLate, kOther };
+
+  /// A component with something unusual.
+  struct Accused {
+    Wrong wrong = Wrong::kOther;
+    std::size_t component = 0;
+    const Excess* main = nullptr;  // what it is named for
+    double sum = 0;                // of the shares that involve it
+    bool abnormal = false;         // one of them is beyond its limit
+    // Of who is absent: when it should have come [ns]; whether that is nearly beyond its limit;
+    // and whether something else of it was heard since.
+    std::int64_t due = std::numeric_limits<std::int64_t>::max();
+    bool sure = false;
+    bool alive = false;
+  };
+  struct Window {
+    const Scorer& scorer;
+    const RecentEvents& events;
+    Leads leads;
+  };
+
+  bool follows(const Track& track) const;
+  const Track& trackOf(const Excess& excess) const { return model_->tracks()[excess.track]; }
+  Suspect suspectOf(const Excess& excess, const Window& window) const;
+  /// Whether it says that its type has not come, for longer than is usual.
+  bool isAbsent(const Excess& excess, const Window& window) const;
+  void accuse(const Excess& excess, const Window& window, std::vector<Accused>& accused) const;
+  /// Those with something wrong, ordered.
+  std::vector<Accused> order(std::vector<Accused> accused, const Window& window) const;
+  std::vector<Accused> rootFirst(const std::vector<Accused>& accused, const Window& window) const;
+  bool isRoot(const Accused& root, const Accused& victim, const Leads& leads) const;
+  /// Whether no more messages of the leader came since the follower's last one than usually do
+  /// between two of the follower's; the last of them has half a mean gap to be answered.
+  bool owesNothing(EventId follower, EventId leader, const Window& window) const;
+  /// Whether what is said of a suspect is what it usually does.
+  bool isUsual(const Suspect& suspect) const;
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Upstream> upstream_;
+  const Tuning& tuning_;
+  std::vector<bool> follows_;  // whether `to` usually comes soon after `from`, by track
+};
+
+}  // namespace self_awareness::core::evidence

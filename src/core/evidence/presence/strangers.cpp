@@ -1,0 +1,146 @@
+#include "core/evidence/presence/strangers.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "self_awareness/core/stream/recent_counts.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+const std::string kLog = "/rosout";
+// As the default encoding tells lines apart: DEBUG, INFO, WARN.
+const std::set<std::string> kBelowError{"[level=1]", "[level=2]", "[level=4]"};
+
+const std::set<std::string> kForEverybody{"/rosout", "/diagnostics", "/tf", "/tf_static"};
+
+/// An event type that training never saw, as a suspect of a window.
+Suspect unknownSuspect(EventId id, const Window& window) {
+  Suspect suspect;
+  suspect.id = id;
+  suspect.abnormal = true;
+  suspect.reason = strangerIn(static_cast<std::size_t>(
+      std::count_if(window.events.begin(), window.events.end(),
+                    [id](const ObservedEvent& other) { return other.event.id == id; })));
+  return suspect;
+}
+
+}  // namespace
+
+bool isForEverybody(const std::string& topic) {
+  return kForEverybody.count(topic) > 0;
+}
+
+void addUnknown(const Window& window, std::vector<Suspect>& suspects) {
+  for (const ObservedEvent& observed : window.events) {
+    const EventId id = observed.event.id;
+    if (observed.unknown && suspects.size() < kMostSuspects &&
+        std::none_of(suspects.begin(), suspects.end(),
+                     [id](const Suspect& other) { return other.id == id; })) {
+      suspects.push_back(unknownSuspect(id, window));
+    }
+  }
+}
+
+Strangers::Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard,
+                     std::shared_ptr<const SourceGraph> graph)
+    : size_(model.size()), heard_(std::move(heard)), graph_(std::move(graph)) {
+  for (EventId id = 0; id < size_; ++id) {
+    const std::string& topic = model.vocabulary().at(id).scope;
+    sources_.insert(model.vocabulary().at(id).source);
+    of_model_.emplace(model.vocabulary().at(id).source, topic);
+    if (!isForEverybody(topic)) {
+      known_[topic].push_back(id);
+    }
+  }
+  // Who published nothing that was heard may log anew, too. At run time, the graph grows.
+  for (const SourceGraph::Edge& edge : graph_->edges()) {
+    sources_.insert(edge.publisher);
+    sources_.insert(edge.subscriber);
+  }
+  for (const auto& [source, topic] : graph_->unheard()) {
+    sources_.insert(source);
+  }
+  for (const auto& [subscription, recordings] : graph_->lasting()) {
+    sources_.insert(subscription.first);
+  }
+}
+
+bool Strangers::add(const Event& event, Accepted& accepted) {
+  if (event.id < size_) {
+    return false;
+  }
+  if (accepted.isAcceptedStranger(event.id)) {
+    last_.erase(event.id);
+    return false;
+  }
+  const auto [known, is_new] = known_by_name_.try_emplace(event.id, false);
+  if (is_new) {
+    known->second = isKnownByName(event.id) || isUsualLine(event.id);
+  }
+  if (!known->second) {
+    last_[event.id] = event.stamp;
+  }
+  return !known->second;
+}
+
+bool Strangers::isKnownByName(EventId id) const {
+  if (!heard_ || id >= heard_->size()) {
+    return false;
+  }
+  const SourceGraph::Publication publication(heard_->at(id).source, heard_->at(id).scope);
+  return graph_->unheard().count(publication) > 0 && of_model_.count(publication) == 0;
+}
+
+bool Strangers::isUsualLine(EventId id) const {
+  if (!heard_ || id >= heard_->size()) {
+    return false;
+  }
+  const EventType& type = heard_->at(id);
+  const std::size_t level = type.type.find('[');
+  return type.scope == kLog && level != std::string::npos &&
+         kBelowError.count(type.type.substr(level)) > 0 && sources_.count(type.source) > 0;
+}
+
+std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const {
+  std::map<std::string, std::int64_t> silences;
+  for (const auto& [id, last] : last_) {
+    if (heard_ && id < heard_->size()) {
+      std::int64_t& of_source =
+          silences.try_emplace(heard_->at(id).source, now - last).first->second;
+      of_source = std::min(of_source, now - last);
+    }
+  }
+  return silences;
+}
+
+std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& scorer,
+                                         const Moved& moved) const {
+  std::vector<Suspect> suspects;
+  for (const auto& [id, last] : last_) {
+    const std::int64_t age = scorer.heard().windowEnd() - last;
+    if (age > kRateSpan || !isStranger(id) || moved.isPlaceOf(id)) {
+      continue;
+    }
+    Suspect suspect = unknownSuspect(id, window);
+    if (suspect.reason.value == 0) {
+      suspect.reason = strangerBefore(toSeconds(age));
+    }
+    suspects.push_back(std::move(suspect));
+  }
+  return suspects;
+}
+
+bool Strangers::isStranger(EventId id) const {
+  if (!heard_ || id >= heard_->size()) {
+    return false;
+  }
+  const EventType& type = heard_->at(id);
+  const auto known = known_.find(type.scope);
+  return known != known_.end() &&
+         std::none_of(known->second.begin(), known->second.end(),
+                      [&](EventId other) { return heard_->at(other).source == type.source; });
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,169 @@
+#include "core/evidence/excuse/busy_machine.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../tracks.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr EventId kComponents = 9;
+
+// All at random but the last one, which answers the first one.
+Events robot(std::int64_t start, unsigned seed) {
+  const Attributes usual{ageClass(kMillisecond), sizeClass(100), Attributes::Step::kNext, false};
+  Events events = atRandom(kComponents - 1, start, 60 * kSecond, 200 * kMillisecond, seed);
+  const Events asked = without(events, [](const Event& event) { return event.id > 0; });
+  events = together({events, answers(kComponents - 1, asked, 20 * kMillisecond)});
+  for (Event& event : events) {
+    event.attributes = usual;
+  }
+  return events;
+}
+
+class BusyMachineTest : public testing::Test {
+ protected:
+  BusyMachineTest() {
+    addAll(scorer_, robot(0, 300));
+    scorer_.closeWindow(60 * kSecond);
+  }
+  /// Contents that changed for a minute change always.
+  static Tuning withFrozen() {
+    Tuning tuning;
+    tuning.changing_time = 60;
+    return tuning;
+  }
+  // The components from `first` on have these shares of their limits.
+  std::optional<Busy> at(double share, EventId first, EventId number,
+                         const std::string& channel = kFewer) {
+    scorer_.closeWindow(now_ += kWindow);
+    std::vector<double> shares = allTracks(*model_, 0);
+    for (EventId id = first; id < first + number; ++id) {
+      ofTrack(shares, *model_, channel, id) = share;
+    }
+    return excuse(shares);
+  }
+
+  std::optional<Busy> excuse(const std::vector<double>& shares) {
+    excesses_ = excessesOf(model_, shares, scorer_);
+    return machine_.excuse(excesses_, scorer_, events_);
+  }
+
+  const std::vector<EventType> types_ = numberedTypes(kComponents);
+  std::shared_ptr<const Model> model_ =
+      std::make_shared<Model>(watch(countsOf({robot(0, 100), robot(2 * kStart, 150)}, types_),
+                                    countsOf({robot(kStart, 200)}, types_), {}, withFrozen()));
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+  Scorer scorer_{model_, kWindow};
+  RecentEvents events_{model_->size()};
+  Explanation explanation_{model_, std::make_shared<Upstream>(model_->components(), graph_)};
+  BusyMachine machine_{model_, explanation_};
+  std::vector<Excess> excesses_;
+  std::int64_t now_ = 60 * kSecond;
+};
+
+TEST_F(BusyMachineTest, WhoWasLateLongBeforeTheOthersIsSoForAnotherReason) {
+  for (int window = 0; window < 300; ++window) {
+    EXPECT_FALSE(at(1.2, 1, 1));
+  }
+  const std::int64_t alone_until = now_;
+  const std::optional<Busy> busy = at(1.2, 1, 5);
+  ASSERT_TRUE(busy);
+  EXPECT_GT(busy->since, alone_until - 20 * kSecond);
+  EXPECT_LT(busy->since, alone_until) << "a load that grows makes one after the other late";
+  EXPECT_EQ(at(1.2, 1, 5)->since, busy->since);
+}
+
+TEST_F(BusyMachineTest, ManyThatAreLateAtOnceHaveABusyMachine) {
+  EXPECT_FALSE(at(1.2, 1, 3));
+  const std::optional<Busy> busy = at(1.2, 1, 5);
+  ASSERT_TRUE(busy);
+  EXPECT_EQ(describe(*busy), "the machine may be busy: 5 of 9 components are late");
+  EXPECT_EQ(describe(*busy, "load 7.9 on 2 cores"),
+            "the machine may be busy (load 7.9 on 2 cores): 5 of 9 components are late");
+}
+
+TEST_F(BusyMachineTest, ItIsBusyForAsLongAsManyAreLateNowAndThen) {
+  EXPECT_TRUE(at(1.2, 1, 5));
+  for (int second = 0; second < 30; ++second) {
+    now_ += kSecond - kWindow;
+    EXPECT_TRUE(at(0.8, 1 + second % 5, 1)) << "another one every second";
+  }
+  now_ += 11 * kSecond;
+  EXPECT_FALSE(at(0.8, 1, 1));
+}
+
+TEST_F(BusyMachineTest, ItIsNotWhileAllAreWithinTheirLimits) {
+  EXPECT_FALSE(at(0.9, 1, 7));
+  EXPECT_TRUE(at(1.1, 1, 7));
+  machine_.restart();
+  EXPECT_FALSE(at(0.9, 1, 7));
+}
+
+TEST_F(BusyMachineTest, WhatBeganBeforeIsNotExcused) {
+  ASSERT_TRUE(at(1.2, 1, 5));
+  const auto excuseOf = [&](std::int64_t onset, EventId id, const char* channel) {
+    excesses_ = {{indexOf(model_->tracks(), channel, id, id), id, onset, 1.5, Excuse::kNone}};
+    machine_.excuse(excesses_, scorer_, events_);
+    return excesses_.front().excuse;
+  };
+  EXPECT_EQ(excuseOf(now_, 1, kFewer), Excuse::kBusy);
+  EXPECT_EQ(excuseOf(now_ - 20 * kSecond, 1, kFewer), Excuse::kNone);
+  EXPECT_EQ(excuseOf(now_, 1, kAge), Excuse::kNone) << "what they hold is another thing";
+}
+
+TEST_F(BusyMachineTest, ItIsStarvedWhileProcessesWait) {
+  const auto wait = [&](int windows, double share) {
+    std::optional<Busy> busy;
+    for (int k = 0; k < windows; ++k) {
+      scorer_.hear({now_, now_ + kWindow, static_cast<std::int64_t>(share * kWindow)});
+      busy = at(0, 1, 0);
+    }
+    return busy;
+  };
+  EXPECT_FALSE(wait(100, 0.05));
+  EXPECT_FALSE(wait(17, 1)) << "for less than nine tenths of the last two seconds";
+  EXPECT_TRUE(wait(1, 1));
+  const std::optional<Busy> busy = wait(12, 1);
+  ASSERT_TRUE(busy);
+  EXPECT_NEAR(busy->starved, 3, 1e-9);
+  EXPECT_EQ(describe(*busy), "the machine has been starved for 3.0 s");
+  EXPECT_EQ(describe({3, 9, 1.2}, "load 7.9 on 2 cores"),
+            "the machine has been starved for 1.2 s (load 7.9 on 2 cores): 3 of 9 components are "
+            "late");
+  EXPECT_TRUE(wait(2, 0));
+  EXPECT_FALSE(wait(1, 0));
+}
+
+TEST_F(BusyMachineTest, WhoIsSilentIsNotLate) {
+  EXPECT_FALSE(at(1.2, 0, kComponents, kOverdue));
+}
+
+TEST_F(BusyMachineTest, WhoSaysSomethingElseIsNotLate) {
+  for (const char* channel : {kAge, kLost, kSize, kFrozen}) {
+    EXPECT_FALSE(at(1.2, 1, 5, channel)) << channel;
+  }
+}
+
+TEST_F(BusyMachineTest, WhoSendsTooOftenIsNotLate) {
+  EXPECT_FALSE(at(1.2, 1, kComponents - 1, kMore));
+  EXPECT_TRUE(at(1.2, 1, 5));
+}
+
+TEST_F(BusyMachineTest, WhoFollowsAnotherAsUsualIsNoFurtherOne) {
+  ASSERT_TRUE(isWatched(model_->tracks(), kPairs, kComponents - 1, 0));
+  std::vector<double> shares = allTracks(*model_, 0);
+  for (const EventId id : {0U, 1U, 2U, kComponents - 1}) {
+    ofTrack(shares, *model_, kFewer, id) = 1.2;
+  }
+  EXPECT_FALSE(excuse(shares));
+  ofTrack(shares, *model_, kFewer, 3) = 1.2;
+  ASSERT_TRUE(excuse(shares));
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

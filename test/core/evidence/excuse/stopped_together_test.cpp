@@ -1,0 +1,140 @@
+#include "core/evidence/excuse/stopped_together.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../tracks.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+// Two fast ones and a slow one on one computer, two fast ones on another.
+const std::vector<EventType> kRobot{{"/laser", "/scan", "T"},
+                                    {"/imu", "/imu/data", "T"},
+                                    {"/battery", "/charge", "T"},
+                                    {"/camera", "/image", "T"},
+                                    {"/faces", "/people", "T"}};
+constexpr EventId kBattery = 2;
+constexpr std::int64_t kEnd = 100 * kSecond;
+constexpr std::int64_t kAgo = 30 * kSecond;
+
+Events robot(std::int64_t start, unsigned seed) {
+  Events events;
+  for (EventId id = 0; id < kRobot.size(); ++id) {
+    const std::int64_t gap = (id == kBattery ? 1000 : 100) * kMillisecond;
+    events = together({events, irregular(id, start, start + kEnd, gap, seed + id)});
+  }
+  return events;
+}
+
+class StoppedTogetherTest : public testing::Test {
+ protected:
+  StoppedTogetherTest() {
+    for (const std::string source : {"/laser", "/imu", "/battery"}) {
+      graph_->place(source, "base");
+    }
+    graph_->place("/camera", "head");
+    graph_->place("/faces", "head");
+  }
+
+  /// Who is silent `after` the time when each stopped [ns].
+  std::optional<Silent> find(const std::vector<std::int64_t>& ages, double share = 2) {
+    Scorer scorer(model_, kWindow);
+    Events last;
+    for (EventId id = 0; id < kRobot.size(); ++id) {
+      last.push_back({kEnd - ages[id], id});
+    }
+    addAll(scorer, together({last}));
+    scorer.closeWindow(kEnd);
+    std::vector<double> shares = allTracks(*model_, 0);
+    for (EventId id = 0; id < kRobot.size(); ++id) {
+      ofTrack(shares, *model_, kOverdue, id) = ages[id] > 0 ? share : 0;
+    }
+    std::vector<Excess> excesses = excessesOf(model_, shares, scorer);
+    return StoppedTogether(model_, std::make_shared<Upstream>(model_->components(), graph_),
+                           graph_)
+        .excuse(excesses, allLimits(*model_, 1), scorer, strangers_,
+                std::vector<bool>(model_->size(), false))
+        .silent;
+  }
+
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+  std::map<std::string, std::int64_t> strangers_;
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
+      watch(countsOf({robot(0, 100)}, kRobot), countsOf({robot(kStart, 200)}, kRobot)));
+};
+
+TEST_F(StoppedTogetherTest, AComputerOfWhichNobodyIsHeardIsFound) {
+  const std::optional<Silent> silent = find({kAgo, kAgo + 1, kAgo + kSecond, 0, 0});
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->hosts, Strings{"base"});
+  EXPECT_EQ(silent->components, (Strings{"/battery", "/imu", "/laser"}));
+  EXPECT_EQ(silent->since, kEnd - kAgo);
+}
+
+TEST_F(StoppedTogetherTest, ItIsNotFoundWhereOneOfItsNodesIsHeard) {
+  EXPECT_FALSE(find({kAgo, kAgo, 0, 0, 0}));
+  EXPECT_FALSE(find({kAgo, kAgo, kSecond, 0, 0})) << "the slow one may yet come";
+  strangers_["/new"] = kSecond;
+  graph_->place("/new", "base");
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}))
+      << "somebody there is heard whom the model does not know";
+}
+
+TEST_F(StoppedTogetherTest, WhoFellSilentLongBeforeTheOthersDidNotDoSoWithThem) {
+  const std::optional<Silent> on_host = find({2 * kAgo, kAgo, kAgo, 0, 0});
+  ASSERT_TRUE(on_host);
+  EXPECT_EQ(on_host->components, (Strings{"/battery", "/imu"}));
+  const std::optional<Silent> all = find({2 * kAgo, kAgo, kAgo, kAgo, kAgo});
+  ASSERT_TRUE(all);
+  EXPECT_TRUE(all->hosts.empty());
+  EXPECT_EQ(all->components, (Strings{"/battery", "/camera", "/faces", "/imu"}));
+}
+
+TEST_F(StoppedTogetherTest, AMomentWithoutTheOthersTakesNobodysDeathAway) {
+  EXPECT_FALSE(find({kAgo, 5 * kSecond, 5 * kSecond, 5 * kSecond, 5 * kSecond}, 0.5))
+      << "a silence that is rare, and far from any limit";
+  for (const EventType& type : kRobot) {
+    graph_->place(type.source, "");
+  }
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, kAgo, 2 * kSecond})) << "one alone";
+}
+
+TEST_F(StoppedTogetherTest, WhoIsFarFromItsLimitProvesNothing) {
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}, 0.5));
+}
+
+TEST_F(StoppedTogetherTest, WhereNobodyIsHeardItIsAll) {
+  const std::optional<Silent> silent = find({kAgo, kAgo, kAgo, kAgo, kAgo});
+  ASSERT_TRUE(silent);
+  EXPECT_TRUE(silent->hosts.empty());
+  EXPECT_EQ(silent->components.size(), 5U);
+}
+
+TEST_F(StoppedTogetherTest, WithoutComputersOnlyAllAreSilentTogether) {
+  for (const EventType& type : kRobot) {
+    graph_->place(type.source, "");
+  }
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}));
+  EXPECT_TRUE(find({kAgo, kAgo, kAgo, kAgo, kAgo}));
+  for (const EventType& type : kRobot) {
+    graph_->place(type.source, "base");
+  }
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0})) << "all run on one";
+}
+
+TEST_F(StoppedTogetherTest, SeveralComputersAreNamedTogether) {
+  graph_->place("/battery", "dock");
+  const std::optional<Silent> silent = find({kAgo, kAgo, 0, kAgo, kAgo});
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->hosts, (Strings{"base", "head"}));
+  EXPECT_EQ(describe(*silent), "everything on hosts base and head fell silent: 4 nodes");
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

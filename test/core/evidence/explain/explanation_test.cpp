@@ -1,0 +1,318 @@
+#include "core/evidence/explain/explanation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../judged.h"
+#include "../tracks.h"
+#include "core/evidence/presence/strangers.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+// A comes at random, about every 200 ms, B 20 ms after it, and C often.
+Events robot(std::int64_t length, unsigned seed) {
+  const Events asked = irregular(kA, 0, length, 200 * kMillisecond, seed);
+  return together({asked, answers(kB, asked, 20 * kMillisecond),
+                   irregular(kC, 0, length, 30 * kMillisecond, seed + 100)});
+}
+
+class ExplanationTest : public testing::Test {
+ public:
+  void add(const Event& event) {
+    scorer_.add(event);
+    events_.add(event, scorer_.stalled());
+    last_ = event.stamp;
+  }
+
+ protected:
+  ExplanationTest() { addAll(*this, robot(10 * kSecond, 3)); }
+  /// Goes on with another model, once it has heard this.
+  void restart(const Watched& watched, const Events& heard) {
+    model_ = std::make_shared<Model>(watched);
+    scorer_ = Scorer(model_, kWindow);
+    events_ = RecentEvents(model_->size());
+    addAll(*this, heard);
+  }
+  // Names the suspects when tracks have reached these shares of their limits.
+  std::vector<Suspect> suspects(const std::vector<std::pair<Track, double>>& reached,
+                                std::int64_t end, const Window& window = {}) {
+    std::vector<double> shares = allTracks(*model_, 0);
+    for (const auto& [track, share] : reached) {
+      ofTrack(shares, *model_, channelName(track), track.to, track.from) = share;
+    }
+    scorer_.closeWindow(end);
+    std::vector<Suspect> named =
+        Explanation(model_, std::make_shared<Upstream>(model_->components(), graph_))
+            .suspects(excessesOf(model_, shares, scorer_), scorer_, events_);
+    addUnknown(window, named);
+    return named;
+  }
+  static Track overdue(EventId id) { return trackOf(kOverdue, id, id); }
+
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
+      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({later(robot(100 * kSecond, 2))})));
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+  Scorer scorer_{model_, kWindow};
+  RecentEvents events_{model_->size()};
+  std::int64_t last_ = 0;
+};
+
+TEST_F(ExplanationTest, NoEvidenceNamesNoSuspect) {
+  EXPECT_TRUE(suspects({}, last_ + kWindow).empty());
+}
+
+TEST_F(ExplanationTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
+  const std::int64_t end = last_ + 5 * kSecond;
+  ASSERT_LT(model_->logSurvival(kC, end - *scorer_.heard().lastSeen(kC)),
+            model_->logSurvival(kA, end - *scorer_.heard().lastSeen(kA)));
+  const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}, {overdue(kC), 1.2}}, end);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kC, kA}));
+  for (const Suspect& suspect : named) {
+    EXPECT_EQ(suspect.reason.kind, Kind::kDied);
+    EXPECT_NEAR(suspect.reason.value, 5, 0.5);
+    EXPECT_LT(suspect.reason.usual_shortest, suspect.reason.usual_longest);
+  }
+}
+
+TEST_F(ExplanationTest, TheRootOfTheSilentComesBeforeItsVictims) {
+  graph_->connect("/a", "/a/out", "/b");
+  graph_->connect("/b", "/b/out", "/c");
+  const std::vector<Suspect> named =
+      suspects({{overdue(kA), 1.1}, {overdue(kB), 1.5}, {overdue(kC), 3}}, last_ + 5 * kSecond);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kB, kC}));
+}
+
+TEST_F(ExplanationTest, ARootThatIsNearItsLimitIsNamedAlready) {
+  graph_->connect("/a", "/a/out", "/b");
+  const std::int64_t end = last_ + 5 * kSecond;
+  const std::vector<Suspect> named = suspects({{overdue(kA), 0.8}, {overdue(kB), 1.5}}, end);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kB}));
+  EXPECT_FALSE(named[0].abnormal);
+  EXPECT_TRUE(named[1].abnormal);
+}
+
+TEST_F(ExplanationTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
+  const std::int64_t end = last_ + 2 * model_->longestGap(kA);
+  ASSERT_LT(model_->logSurvival(kA, end - *scorer_.heard().lastSeen(kA)),
+            std::log(model_->tuning().rare_silence));
+  const Track fewer = trackOf(kFewer, kA, kA);
+  // At half its rate its age is rare, too, but no more than that.
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kSlow);
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 0.8}}, end).at(0).reason.kind, Kind::kDied);
+  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kDied);
+}
+
+TEST_F(ExplanationTest, LongerGapsAreSaidAsAnotherRateNotAsASilence) {
+  for (int i = 0; i < 6; ++i) {
+    add({last_ + kSecond, kA});
+  }
+  const std::int64_t end = last_ + kSecond;
+  const Track gaps = trackOf(kOwnGaps, kA, kA);
+  ASSERT_TRUE(isWatched(model_->tracks(), kOwnGaps, kA, kA));
+  const Suspect slow = suspects({{overdue(kA), 0.9}, {gaps, 1.2}}, end).at(0);
+  EXPECT_EQ(slow.reason.kind, Kind::kSlow);
+  EXPECT_EQ(slow.reason.words, "every 1 s instead of 0.14 s, 6 times in the last 6.0 s");
+  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {gaps, 1.2}}, end).at(0).reason.kind, Kind::kDied);
+}
+
+TEST_F(ExplanationTest, WhoDoesWhatIsUsualIsNoSuspect) {
+  // Near its limit, and its age is rare, but no longer than the longest gap of training.
+  const std::int64_t end = *scorer_.heard().lastSeen(kA) + model_->longestGap(kA);
+  ASSERT_LT(model_->logSurvival(kA, end - *scorer_.heard().lastSeen(kA)),
+            std::log(model_->tuning().rare_silence));
+  const Track abnormal = trackOf(kMore, kC, kC);
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end)),
+            (std::vector<EventId>{kC}));
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end + 1)),
+            (std::vector<EventId>{kC, kA}));
+  graph_->connect("/a", "/a/out", "/c");
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end)),
+            (std::vector<EventId>{kC}))
+      << "upstream or not";
+}
+
+TEST_F(ExplanationTest, ALateAnswererIsNamedBeforeTheOneThatAsks) {
+  const std::vector<Suspect> named = suspects({{trackOf(kPairs, kB, kA), 1.5}}, last_ + kWindow);
+  ASSERT_EQ(idsOf(named), std::vector<EventId>{kB});
+  EXPECT_EQ(named.front().reason.kind, Kind::kOutOfOrder) << "none of its delays was unusual";
+  EXPECT_EQ(named.front().reason.after, toString(kTypes[kA]));
+  EXPECT_NEAR(named.front().reason.value, 0.020, 1e-9);
+  EXPECT_NEAR(named.front().reason.usual_shortest, 0.020, 0.004);
+}
+
+// A asks, B answers after 20 ms, and C answers B after 30 ms.
+Events chain(std::int64_t start, std::int64_t length, std::int64_t delay, unsigned seed) {
+  const Events asked = irregular(kA, start, start + length, 200 * kMillisecond, seed);
+  const Events relayed = answers(kB, asked, delay);
+  return together({asked, relayed, answers(kC, relayed, 30 * kMillisecond)});
+}
+
+class ExplanationOfAChainTest : public ExplanationTest {
+ protected:
+  ExplanationOfAChainTest() {
+    restart(watch(countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)}),
+                  countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)})),
+            chain(0, 20 * kSecond, 20 * kMillisecond, 3));
+  }
+  void addLate() {
+    addAll(*this, chain(last_ + 100 * kMillisecond, 2 * kSecond, 80 * kMillisecond, 4));
+  }
+  static Track delay(EventId to, EventId from) { return trackOf(kPairs, to, from); }
+};
+
+TEST_F(ExplanationOfAChainTest, TheOneWhoseDelayGrewComesBeforeWhoFollowsItAsUsual) {
+  addLate();
+  const std::vector<Suspect> named =
+      suspects({{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}}, last_ + kMillisecond);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
+}
+
+TEST_F(ExplanationOfAChainTest, WhoDoesNotFollowAsUsualIsToBlameItself) {
+  addLate();
+  const std::vector<Suspect> named = suspects(
+      {{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}, {delay(kC, kB), 1.5}}, last_ + kMillisecond);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kC, kB}));
+}
+
+TEST_F(ExplanationOfAChainTest, WithoutAGraphTheRootOfTheSilentIsWhoIsFollowed) {
+  const std::vector<Suspect> named =
+      suspects({{overdue(kC), 3}, {overdue(kB), 1.5}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kB, kC}));
+}
+
+TEST_F(ExplanationOfAChainTest, WhoIsToBlameForASilenceComesBeforeIt) {
+  // A goes on, at another rate, and C has answered.
+  const std::int64_t end = *scorer_.heard().lastSeen(kC) + 2 * model_->longestGap(kC);
+  const std::vector<Suspect> named =
+      suspects({{overdue(kC), 0.9}, {trackOf(kFewer, kB, kB), 1.5}}, end);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
+}
+
+// A is a timer, B answers to every second message after 60 ms, and C often comes at random.
+Events everySecond(std::int64_t start, std::int64_t length, std::int64_t period, unsigned seed) {
+  return together({timer(kA, start, start + length, period),
+                   timer(kB, start + period + 60 * kMillisecond, start + length, 2 * period),
+                   irregular(kC, start, start + length, 30 * kMillisecond, seed)});
+}
+
+TEST_F(ExplanationTest, WhoAnswersEverySecondMessageIsNotToBlameWhileTheseComeAtHalfTheRate) {
+  constexpr std::int64_t kPeriod = 100 * kMillisecond;
+  restart(watch(countsOf({everySecond(0, 100 * kSecond, kPeriod, 1)}),
+                countsOf({everySecond(kStart, 100 * kSecond, kPeriod, 2)})),
+          everySecond(0, 20 * kSecond, kPeriod, 3));
+  graph_->connect("/a", "/x", "/b");
+  ASSERT_EQ(scorer_.heard().lastSeen(kB), 19960 * kMillisecond);
+  ASSERT_EQ(scorer_.heard().lastSeen(kA), 19900 * kMillisecond);
+  const std::vector<std::pair<Track, double>> reached{{overdue(kB), 1.2},
+                                                      {trackOf(kFewer, kA, kA), 1.2}};
+  add({20100 * kMillisecond, kA});
+  EXPECT_EQ(idsOf(suspects(reached, 20290 * kMillisecond)), (std::vector<EventId>{kA, kB}));
+  add({20300 * kMillisecond, kA});
+  EXPECT_EQ(idsOf(suspects(reached, 20340 * kMillisecond)), (std::vector<EventId>{kA, kB}))
+      << "it has time to answer";
+  EXPECT_EQ(idsOf(suspects(reached, 20400 * kMillisecond)), (std::vector<EventId>{kB, kA}));
+}
+
+// A asks about every 4 s, B answers after 0.4 s, and C comes often.
+Events requests(std::int64_t length, unsigned seed) {
+  const Events asked = irregular(kA, 0, length, 4 * kSecond, seed);
+  return together({asked, answers(kB, asked, 400 * kMillisecond),
+                   irregular(kC, 0, length, 30 * kMillisecond, seed + 100)});
+}
+
+TEST_F(ExplanationTest, WhoOwesAnAnswerIsNamedAsASilentOne) {
+  restart(watch(startOf(requests(400 * kSecond, 1), 0), startOf(requests(400 * kSecond, 2), 1)),
+          requests(20 * kSecond, 3));
+  add({last_ + kSecond, kA});
+  const std::vector<Suspect> named = suspects(
+      {{trackOf(kMore, kC, kC), 1.9}, {trackOf(kDeadlines, kB, kA), 1.1}}, last_ + 2 * kSecond);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
+  EXPECT_EQ(named.front().reason.kind, Kind::kDied);
+  EXPECT_EQ(named.front().reason.words, "has not come for 2.00 s after /a /x T");
+}
+
+TEST_F(ExplanationTest, SilentOnesComeBeforeUnusualOnes) {
+  const std::vector<Suspect> named =
+      suspects({{trackOf(kMore, kC, kC), 2}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kC}));
+}
+
+TEST_F(ExplanationTest, OwnFaultsCountMoreThanDelaysAfterOthers) {
+  // B's delays after A are unusual because A comes at another rate.
+  const std::vector<Suspect> named =
+      suspects({{trackOf(kPairs, kB, kA), 1.9}, {trackOf(kMore, kA, kA), 1.1}}, last_ + kWindow);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kB}));
+}
+
+TEST_F(ExplanationTest, TheOrderOfItsOwnEventsIsAnOwnFault) {
+  // A and B are of one component, and C's delays after B are unusual because of that.
+  const std::vector<EventType> types{{"/a", "/x", "T"}, {"/a", "/y", "T"}, {"/c", "/z", "T"}};
+  restart(watch(countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)}, types),
+                countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)}, types)),
+          chain(0, 20 * kSecond, 20 * kMillisecond, 3));
+  const std::vector<Suspect> named =
+      suspects({{trackOf(kPairs, kB, kA), 1.1}, {trackOf(kPairs, kC, kB), 1.9}}, last_ + kWindow);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
+}
+
+TEST_F(ExplanationTest, UnknownEventsAreNamedLast) {
+  Window window;
+  for (const EventId id : {5U, 4U, 5U}) {
+    window.events.push_back({{last_, id}, true, std::nullopt});
+  }
+  window.events.push_back({{last_, kA}, false, std::nullopt});
+  const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond, window);
+  ASSERT_EQ(idsOf(named), (std::vector<EventId>{kA, 5, 4}));
+  EXPECT_EQ(named[1].reason.kind, Kind::kStranger);
+  EXPECT_EQ(named[1].reason.value, 2);
+  EXPECT_EQ(named[2].reason.value, 1);
+}
+
+TEST_F(ExplanationTest, NoMoreThanFiveAreNamed) {
+  Window window;
+  for (EventId id = 10; id < 20; ++id) {
+    window.events.push_back({{last_, id}, true, std::nullopt});
+  }
+  EXPECT_EQ(suspects({}, last_ + kWindow, window).size(), kMostSuspects);
+}
+
+TEST_F(ExplanationTest, FurtherComponentsFollowIfTheirEvidenceAloneIsAbnormal) {
+  std::vector<EventType> types;
+  Events events;
+  for (const std::string name : {"/a", "/b", "/c", "/d", "/e", "/e", "/f", "/g"}) {
+    const auto id = static_cast<EventId>(types.size());
+    types.push_back({name, "/topic" + std::to_string(id), "T"});
+    events = together({events, timer(id, 0, 100 * kSecond, (90 + 10 * id) * kMillisecond)});
+  }
+  restart(watch(countsOf({events}, types), {}), events);
+  std::vector<std::pair<Track, double>> reached;
+  for (EventId id = 0; id < types.size(); ++id) {
+    reached.emplace_back(overdue(id), id == 6 ? 0.9 : 1.5);
+  }
+  // 5 is another type of a component that is named, 6 is near its limit.
+  std::vector<EventId> named = idsOf(suspects(reached, last_ + 3 * kSecond));
+  std::sort(named.begin(), named.end());
+  EXPECT_EQ(named, (std::vector<EventId>{0, 1, 2, 3, 4, 7}));
+}
+
+TEST_F(ExplanationTest, ATopicIsNamedIfItsSenderIsNotKnown) {
+  std::vector<EventType> types = kTypes;
+  for (EventType& type : types) {
+    type.source.clear();
+  }
+  model_ = std::make_shared<Model>(watch(countsOf({robot(100 * kSecond, 1)}, types), {}));
+  graph_->connect("/x", "/x/out", "/z");
+  const std::vector<Suspect> named =
+      suspects({{overdue(kA), 1.5}, {overdue(kC), 1.5}}, last_ + 5 * kSecond);
+  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kC}));
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

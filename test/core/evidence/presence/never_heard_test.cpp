@@ -1,0 +1,249 @@
+#include "core/evidence/presence/never_heard.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../judged.h"
+#include "../tracks.h"
+#include "self_awareness/core/evidence/judge.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::int64_t kSettle = 5 * kSecond;
+constexpr std::int64_t kPeriod = 200 * kMillisecond;
+
+// A robot of which A and B start at once, and C so much later; without it where that is none.
+Events start(std::optional<std::int64_t> c_starts, unsigned seed,
+             std::int64_t length = 60 * kSecond) {
+  return together({irregular(kA, 0, length, kPeriod, seed),
+                   irregular(kB, 50 * kMillisecond, length, kPeriod, seed + 1),
+                   c_starts ? irregular(kC, *c_starts, length, kPeriod, seed + 2) : Events{}});
+}
+
+class NeverHeardTest : public testing::Test {
+ protected:
+  NeverHeardTest() { train({start(0, 1)}, {start(0, 7)}); }
+  void train(const std::vector<Events>& first, const std::vector<Events>& second) {
+    model_ = std::make_shared<Model>(watch(countsOf(first), countsOf(second)));
+  }
+  NeverHeard neverHeard(const Limits& limits = {}) const {
+    return NeverHeard(*model_, limits, std::make_shared<Upstream>(model_->components(), graph_));
+  }
+  // It has heard these at its start.
+  NeverHeard neverHeardBut(const std::vector<EventId>& ids, const Limits& limits = {}) const {
+    NeverHeard never_heard = neverHeard(limits);
+    for (const EventId id : ids) {
+      never_heard.add({0, id});
+    }
+    return never_heard;
+  }
+  // The share after so much time in which only A was heard.
+  static double shareAt(NeverHeard& never_heard, std::int64_t now) {
+    never_heard.closeWindow(now, kSettle);
+    return never_heard.share();
+  }
+  static std::vector<EventId> named(const NeverHeard& never_heard) {
+    return idsOf(never_heard.suspects());
+  }
+
+  // What the judge says once B has been silent for 30 s, and C was never heard.
+  Judgement afterSilenceOfB() const {
+    Limits limits = allLimits(*model_, kNone);
+    ofTrack(limits.tracks, *model_, kOverdue, kB) = 5;
+    const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits, kWindow, graph_);
+    addAll(*judge, start(std::nullopt, 3, 10 * kSecond));
+    judge->add({40 * kSecond, kA});
+    return judge->judge({40 * kSecond, {}}, 40 * kSecond, NameSuspects::kIfUnusual);
+  }
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+};
+
+TEST_F(NeverHeardTest, WhatIsExcusedNeedNotCome) {
+  train({start(14400 * kMillisecond, 1)}, {start(14600 * kMillisecond, 7)});
+  NeverHeard never_heard = neverHeardBut({kA, kB});
+  std::vector<bool> may_be_silent(model_->size(), false);
+  may_be_silent[kC] = true;
+  never_heard.excuse(may_be_silent);
+  EXPECT_EQ(shareAt(never_heard, 117 * kSecond), 0);
+  EXPECT_TRUE(never_heard.suspects().empty());
+  EXPECT_TRUE(never_heard.shares().empty());
+  may_be_silent[kC] = false;
+  never_heard.excuse(may_be_silent);
+  EXPECT_GT(shareAt(never_heard, 117 * kSecond), 1) << "once that is taken back";
+}
+
+TEST_F(NeverHeardTest, WhatComesLateAsAlwaysIsNormalAndWhatDoesNotComeIsNot) {
+  train({start(14400 * kMillisecond, 1)}, {start(14600 * kMillisecond, 7)});
+  NeverHeard never_heard = neverHeardBut({kA, kB});
+  EXPECT_EQ(shareAt(never_heard, 29 * kSecond), 0);  // due after 2 * 14.6 s
+  const double due = shareAt(never_heard, 29300 * kMillisecond);
+  EXPECT_GT(due, 0);
+  EXPECT_LT(due, 1);
+  ASSERT_EQ(never_heard.suspects().size(), 1U);
+  const Suspect suspect = never_heard.suspects().front();
+  EXPECT_EQ(suspect.id, kC);
+  EXPECT_EQ(suspect.reason.words, "not heard since the start, usually within 14.4 to 14.6 s");
+  EXPECT_NEAR(suspect.reason.value, 29.3, 1e-9);
+  EXPECT_EQ(suspect.component, "/c");
+  EXPECT_FALSE(suspect.abnormal);
+  EXPECT_LT(shareAt(never_heard, 116 * kSecond), 1);  // four times as late
+  EXPECT_GT(shareAt(never_heard, 117 * kSecond), 1);
+  EXPECT_TRUE(never_heard.suspects().front().abnormal);
+  never_heard.add({118 * kSecond, kC});
+  EXPECT_EQ(shareAt(never_heard, 119 * kSecond), 0);
+  EXPECT_TRUE(never_heard.suspects().empty());
+}
+
+TEST_F(NeverHeardTest, WhatComesAtOnceHasTimeUntilItIsDue) {
+  NeverHeard never_heard = neverHeardBut({kA});
+  EXPECT_EQ(shareAt(never_heard, 5 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 6 * kSecond), 0);
+  EXPECT_EQ(named(never_heard), (std::vector<EventId>{kB, kC}));
+  EXPECT_LT(shareAt(never_heard, 64 * kSecond), 1);  // at least 60 s after that
+  EXPECT_GT(shareAt(never_heard, 66 * kSecond), 1);
+}
+
+TEST_F(NeverHeardTest, ItIsAnAlarmForAMinuteAndASuspicionFromThenOn) {
+  NeverHeard never_heard = neverHeardBut({kA});
+  EXPECT_GT(shareAt(never_heard, 66 * kSecond), 1);
+  EXPECT_GT(shareAt(never_heard, 125 * kSecond), 1);
+  EXPECT_EQ(shareAt(never_heard, 126 * kSecond), 1);
+  EXPECT_FALSE(never_heard.suspects().front().abnormal);
+}
+
+TEST_F(NeverHeardTest, ATopicOfANodeThatSaysOtherThingsIsASuspicionOnly) {
+  const auto both = [](std::int64_t from, unsigned seed) {
+    return countsOf({start(from, seed)},
+                    {{"/a", "/x", "T"}, {"/b", "/y", "T"}, {"/a", "/z", "T"}});
+  };
+  model_ = std::make_shared<Model>(watch(both(0, 1), both(0, 7)));
+  NeverHeard never_heard = neverHeardBut({kA});
+  EXPECT_GT(shareAt(never_heard, 66 * kSecond), 1);
+  EXPECT_EQ(named(never_heard), (std::vector<EventId>{kB, kC}));
+  EXPECT_TRUE(never_heard.suspects()[0].abnormal);
+  EXPECT_FALSE(never_heard.suspects()[1].abnormal) << "/a says another thing";
+  never_heard.add({67 * kSecond, kB});
+  EXPECT_EQ(shareAt(never_heard, 68 * kSecond), 1);
+}
+
+TEST_F(NeverHeardTest, ALongSettlingTimeIsWaitedFor) {
+  NeverHeard never_heard = neverHeardBut({kA});
+  never_heard.closeWindow(30 * kSecond, 30 * kSecond);
+  EXPECT_EQ(never_heard.share(), 0);
+  never_heard.closeWindow(30 * kSecond + 1, 30 * kSecond);
+  EXPECT_GT(never_heard.share(), 0);
+}
+
+TEST_F(NeverHeardTest, WhatCameInSomeRecordingsOnlyIsNotExpected) {
+  train({start(0, 1), start(std::nullopt, 4)}, {start(0, 7)});
+  NeverHeard never_heard = neverHeardBut({kA});
+  shareAt(never_heard, 600 * kSecond);
+  EXPECT_EQ(named(never_heard), std::vector<EventId>{kB});
+}
+
+TEST_F(NeverHeardTest, WhatIsSlowHasTwiceItsLongestGap) {
+  const Events slow = timer(kC, 0, 1200 * kSecond, 30 * kSecond);
+  train({together({start(std::nullopt, 1, 1200 * kSecond), slow})},
+        {together({start(std::nullopt, 7, 1200 * kSecond), slow})});
+  NeverHeard never_heard = neverHeardBut({kA, kB});
+  EXPECT_EQ(shareAt(never_heard, 60 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 61 * kSecond), 0);
+}
+
+TEST_F(NeverHeardTest, WhoMayBeSilentIsNotDueBefore) {
+  Limits limits = allLimits(*model_, kNone);
+  ofTrack(limits.tracks, *model_, kOverdue, kC) = model_->overdue(kC, 100 * kSecond);
+  NeverHeard never_heard = neverHeardBut({kA, kB}, limits);
+  EXPECT_EQ(shareAt(never_heard, 99 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 101 * kSecond), 0);
+  EXPECT_LT(shareAt(never_heard, 159 * kSecond), 1) << "a minute later, not four times as late";
+  EXPECT_GT(shareAt(never_heard, 161 * kSecond), 1);
+}
+
+TEST_F(NeverHeardTest, TooFewGapsSayNothing) {
+  const Events rare = timer(kC, 0, 15 * kSecond, kSecond);  // 14 gaps in each half
+  train({together({start(std::nullopt, 1), rare})}, {together({start(std::nullopt, 7), rare})});
+  NeverHeard never_heard = neverHeardBut({kA});
+  shareAt(never_heard, 600 * kSecond);
+  EXPECT_EQ(named(never_heard), std::vector<EventId>{kB});
+}
+
+TEST_F(NeverHeardTest, RecordingsOfTheCalibrationCountToo) {
+  train({start(7180, 1)}, {start(0, 7)});
+  Limits limits;
+  limits.firsts = {0, -1, 20 * kSecond};  // in one, B did not come
+  NeverHeard never_heard = neverHeardBut({kA}, limits);
+  EXPECT_EQ(shareAt(never_heard, 40 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 41 * kSecond), 0);
+  EXPECT_EQ(named(never_heard), std::vector<EventId>{kC});
+  EXPECT_EQ(never_heard.suspects().front().reason.words,
+            "not heard since the start, usually within 0 to 20 s");
+}
+
+TEST_F(NeverHeardTest, TheFirstEventOfAnyIdIsTheStart) {
+  NeverHeard never_heard = neverHeard();
+  EXPECT_EQ(shareAt(never_heard, 1000 * kSecond), 0);
+  never_heard.add({1000 * kSecond, 99});
+  EXPECT_EQ(shareAt(never_heard, 1005 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 1006 * kSecond), 0);
+  never_heard.restart();
+  EXPECT_EQ(never_heard.share(), 0);
+  never_heard.add({2000 * kSecond, kA});
+  EXPECT_EQ(shareAt(never_heard, 2005 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 2006 * kSecond), 0);
+  EXPECT_EQ(named(never_heard), (std::vector<EventId>{kB, kC}));
+}
+
+TEST_F(NeverHeardTest, TheRootComesFirst) {
+  graph_->connect("/c", "/z", "/b");
+  NeverHeard never_heard = neverHeardBut({kA});
+  shareAt(never_heard, 6 * kSecond);
+  EXPECT_EQ(named(never_heard), (std::vector<EventId>{kC, kB}));
+}
+
+TEST_F(NeverHeardTest, TheJudgeSuspectsAndThenAlarms) {
+  std::optional<double> suspected;
+  std::optional<double> raised;
+  std::vector<Suspect> suspects;
+  std::string evidence;
+  judge(makeJudge(model_, allLimits(*model_, kNone), kWindow, graph_),
+        start(std::nullopt, 3, 120 * kSecond), [&](const Verdict& verdict) {
+          const double end = toSeconds(verdict.window->start + kWindow);
+          if (verdict.suspicion && !suspected) {
+            suspected = end;
+          }
+          if (verdict.alarm && !raised) {
+            raised = end;
+            suspects = verdict.suspects;
+            evidence = verdict.evidence;
+            EXPECT_LT(*verdict.score, kThreshold);
+          }
+        });
+  EXPECT_NEAR(suspected.value(), 5.2, 0.3);
+  EXPECT_NEAR(raised.value(), 65.2, 0.3);
+  EXPECT_EQ(evidence, "never heard");
+  ASSERT_EQ(suspects.size(), 1U);
+  EXPECT_EQ(suspects.front().id, kC);
+  EXPECT_EQ(suspects.front().reason.kind, Kind::kNeverCame);
+}
+
+TEST_F(NeverHeardTest, WhatFellSilentIsNamedBeforeWhatNeverCame) {
+  const Judgement judgement = afterSilenceOfB();
+  EXPECT_EQ(idsOf(judgement.suspects), (std::vector<EventId>{kB, kC}));
+  EXPECT_EQ(judgement.evidence, "never heard, overdue");
+}
+
+TEST_F(NeverHeardTest, WhoWaitsForItIsNamedAfterIt) {
+  graph_->connect("/c", "/z", "/b");
+  EXPECT_EQ(idsOf(afterSilenceOfB().suspects), (std::vector<EventId>{kC, kB}));
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence
