@@ -129,7 +129,7 @@ std::vector<core::Acceptance> ofAlarm(const core::Alarm& alarm,
   if (alarm.culprit.empty()) {
     throw std::invalid_argument("nobody is to blame for it (" + core::toString(alarm.kind) +
                                 "); name a component that may do so, and the kind of what it "
-                                "does: \"{component: /NAME, kind: died}\"");
+                                "does: \"{component: /NAME, kind: silent}\"");
   }
   const bool shared = alarm.busy || alarm.silent;
   std::vector<core::Acceptance> all;
@@ -167,7 +167,7 @@ std::vector<core::Acceptance> ofIncident(const self_awareness::Incident& inciden
   }
   std::vector<std::string> names{incident.component};
   const std::optional<core::Kind> kind = kindIn(incident.kind);
-  if (kind == core::Kind::kDied) {  // who is there fell silent
+  if (kind && core::isSilence(*kind)) {  // who is there fell silent
     names.insert(names.end(), incident.together.begin(), incident.together.end());
   }
   std::vector<core::Acceptance> all;
@@ -200,7 +200,7 @@ std::vector<core::Acceptance> ofWhatStands(std::uint64_t id, const Acceptable& a
 
 bool isAccepted(const core::Acceptance& one, const core::Acceptances& accepted) {
   return one.together.empty()
-             ? accepted.covers(one.component, one.topic, one.kind.value_or(core::Kind::kDied))
+             ? accepted.covers(one.component, one.topic, one.kind.value_or(core::Kind::kSilent))
              : accepted.coversMode(one.together);
 }
 

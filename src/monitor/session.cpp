@@ -104,7 +104,7 @@ void Session::accept(const core::Acceptances& accepted) {
   std::vector<bool> may_be_silent;
   for (const core::EventType& type : types()) {
     const std::string& component = core::componentOf(type.source, type.scope);
-    may_be_silent.push_back(accepted_.covers(component, type.scope, core::Kind::kDied));
+    may_be_silent.push_back(accepted_.covers(component, type.scope, core::Kind::kSilent));
     if (accepted_.mayBeAbsent(component, type.scope)) {
       optional_.insert(component);
     }

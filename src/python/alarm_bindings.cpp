@@ -2,18 +2,35 @@
 
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bindings.h"
 #include "self_awareness/core/verdict/alarm.h"
+#include "self_awareness/core/verdict/sentence.h"
 
 namespace self_awareness::python {
+namespace {
+
+std::string sentenceOf(const std::string& kind, std::vector<std::string> components,
+                       std::string topic, std::string wrong, std::string reason, bool is_silence,
+                       std::string begin, std::string end, std::string goes_on, std::string back,
+                       std::size_t times, std::vector<std::string> hosts, std::size_t silent) {
+  return core::sentence({core::kindOf(kind).value(), std::move(components), std::move(topic),
+                         std::move(wrong), std::move(reason), is_silence, std::move(begin),
+                         std::move(end), std::move(goes_on), std::move(back), times,
+                         std::move(hosts), silent});
+}
+
+}  // namespace
 
 void bindAlarms(py::module& m) {
   using core::Reason;
   py::class_<Reason>(m, "Reason", "Why an event type is a suspect.")
       .def_property_readonly(
           "kind", [](const Reason& self) { return core::toString(self.kind); },
-          "died, slow, fast, late, early, out of order, never came or stranger")
+          "silent, topic silent, unanswered, slow, fast, late, early, out of order, never came ..."
+          "as SelfAwareness.msg has them")
       .def_readonly("after", &Reason::after,
                     "the event type that it should come after; empty: its own last")
       .def_readonly("unit", &Reason::unit,
@@ -32,13 +49,17 @@ void bindAlarms(py::module& m) {
       .def_readonly("topics", &Reason::topics,
                     "that it does not subscribe to; of a stranger, what it has from others, or "
                     "plays on")
-      .def_readonly("words", &Reason::words, "all of it in words and numbers");
+      .def_readonly("words", &Reason::words, "all of it in words and numbers")
+      .def("shortly", &core::shortly, py::arg("is_silence"), py::arg("is_back"),
+           "What somebody does wrong, in a few words.");
 
   py::class_<core::Suspect>(m, "Suspect", "An event type that may have made a window abnormal.")
       .def_readonly("id", &core::Suspect::id, "of the event type")
       .def_readonly("component", &core::Suspect::component,
                     "whose event type it is; empty: not known")
       .def_readonly("abnormal", &core::Suspect::abnormal, "it alone would be abnormal")
+      .def_readonly("onset", &core::Suspect::onset,
+                    "since when what is wrong with it has been so [ns]; 0: not known")
       .def_readonly("since", &core::Suspect::since,
                     "when the alarm or the suspicion first named its component [ns]")
       .def_readonly("reason", &core::Suspect::reason);
@@ -84,6 +105,25 @@ void bindAlarms(py::module& m) {
       .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first")
       .def_readonly("later", &Alarm::later,
                     "of components that it named later, each with its time (since)");
+  m.def("sentence", &sentenceOf, py::arg("kind"), py::arg("components"), py::arg("topic"),
+        py::arg("wrong"), py::arg("reason"), py::arg("is_silence"), py::arg("begin"),
+        py::arg("end"), py::arg("goes_on"), py::arg("back"), py::arg("times"), py::arg("hosts"),
+        py::arg("silent"),
+        "Return what happened in a sentence without its full stop; times are in words.\n\n"
+        "Args:\n"
+        "    kind: what is wrong, as Alarm.kind.\n"
+        "    components: to blame: the culprit, and who failed at once with it.\n"
+        "    topic: what of the culprit is wrong, if it is alone; empty: all of it.\n"
+        "    wrong: what it does wrong, as Reason.shortly() says.\n"
+        "    reason: the same where nobody is to blame, or it should not be there.\n"
+        "    is_silence: nothing came meanwhile: then begin is the last message.\n"
+        "    begin: empty: the start.\n"
+        "    end: empty: it goes on.\n"
+        "    goes_on: then: until when; empty: nobody knows.\n"
+        "    back: who came back when; empty: nobody did.\n"
+        "    times: alarms; above 1, the times are those of the longest.\n"
+        "    hosts: computers that fell silent as a whole.\n"
+        "    silent: components that did.\n");
 }
 
 }  // namespace self_awareness::python

@@ -5,7 +5,7 @@
 >>> for alarm in model.judge('crash.bag'):
 ...     if alarm.level == 'ERROR':
 ...         print(alarm.kind, alarm.culprit)
-died /laser
+silent /laser
 
 docs/python.md tells more. The method is implemented once, in C++; the other names here are its
 parts, which the programs (`self_awareness.commands`) are made of.

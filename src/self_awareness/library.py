@@ -26,7 +26,7 @@ class Alarms(List[Alarm]):
 
     >>> alarms = load('robot.model').judge('crash.bag')
     >>> [(alarm.level, alarm.kind, alarm.culprit) for alarm in alarms if alarm.level == 'ERROR']
-    [('ERROR', 'died', '/laser')]
+    [('ERROR', 'silent', '/laser')]
     >>> alarms[-1].suspects[0].reason.words[:10]
     'silent for'
 
@@ -45,7 +45,7 @@ class Alarms(List[Alarm]):
 
         >>> row = load('robot.model').judge('crash.bag').table()[-1]
         >>> row['level'], row['kind'], row['culprit'], 12.0 < row['begin_s'] < 13.0
-        ('ERROR', 'died', '/laser', True)
+        ('ERROR', 'silent', '/laser', True)
         """
         return [alarms.as_values(alarm, self.recording.event_types, self.recording.origin)
                 for alarm in self]

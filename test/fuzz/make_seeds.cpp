@@ -110,7 +110,7 @@ void writeStandingAlarm(const std::string& folder) {
   self_awareness::StandingAlarm standing;
   standing.alarm.level = self_awareness::SelfAwareness::ERROR;
   standing.alarm.alarm = 1;
-  standing.alarm.kind = core::toString(core::Kind::kDied);
+  standing.alarm.kind = core::toString(core::Kind::kSilent);
   standing.alarm.suspects.resize(1);
   standing.alarm.suspects[0].source = "/node";
   standing.alarm.suspects[0].scope = "/topic";

@@ -107,14 +107,14 @@ class AcceptCallsTest : public testing::Test {
 };
 
 TEST_F(AcceptCallsTest, WhatStandsIsTakenByItsIdWhileItStands) {
-  stands(core::Kind::kDied, {suspect(0, "/driver", core::Kind::kDied),
-                             suspect(1, "/base", core::Kind::kLate, false)});
+  stands(core::Kind::kSilent, {suspect(0, "/driver", core::Kind::kSilent),
+                               suspect(1, "/base", core::Kind::kLate, false)});
   Accept::Request request;
   request.alarm = 4;
   EXPECT_EQ(call(request, false), "alarm: 4 does not stand any more");
   request.alarm = 5;
   call(request);
-  EXPECT_EQ(accepted(), "/driver on /scan (died)") << "the other one is near its limit only";
+  EXPECT_EQ(accepted(), "/driver on /scan (silent)") << "the other one is near its limit only";
   EXPECT_TRUE(calls_.covers(*alarm_, vocabulary_));
   alarm_.reset();
   EXPECT_EQ(call(request, false), "alarm: 5 does not stand any more");
@@ -122,7 +122,7 @@ TEST_F(AcceptCallsTest, WhatStandsIsTakenByItsIdWhileItStands) {
 }
 
 TEST_F(AcceptCallsTest, ADeathIsCoveredByAnAbsenceThatIsAccepted) {
-  stands(core::Kind::kDied, {suspect(0, "/driver", core::Kind::kDied)});
+  stands(core::Kind::kSilent, {suspect(0, "/driver", core::Kind::kSilent)});
   call(asked("/driver", "", "never came"));
   EXPECT_TRUE(calls_.covers(*alarm_, vocabulary_));
   stands(core::Kind::kSlow, {suspect(0, "/driver", core::Kind::kSlow)});
@@ -144,23 +144,24 @@ TEST_F(AcceptCallsTest, WhatNamesNobodyOrNoKindIsRefused) {
 
 TEST_F(AcceptCallsTest, ACallThatNamesNothingAcceptsNothingAndTellsWhatMayBeNamed) {
   EXPECT_EQ(call({}, false), "nothing stands, and nobody is new; name a component or a topic");
-  stands(core::Kind::kDied, {suspect(0, "/driver", core::Kind::kDied)});
+  stands(core::Kind::kSilent, {suspect(0, "/driver", core::Kind::kSilent)});
   unknown_[1] = 12;
   for (std::uint64_t id = 2; id < 6; ++id) {
     self_awareness::Incident& incident = incidents_.incidents.emplace_back();
     incident.id = incident.last = id;
-    incident.kind = id == 2 ? "busy machine" : "died";
+    incident.kind = id == 2 ? "busy machine" : "silent";
     incident.component = id == 2 ? "" : id == 3 ? "/slam" : "/driver";
   }
   const std::string offers =
-      "nothing is accepted, as nothing is named. Give \"{alarm: 5}\" for /driver on /scan (died), "
+      "nothing is accepted, as nothing is named. Give \"{alarm: 5}\" for /driver on /scan "
+      "(silent), "
       "\"{component: /base, topic: /odom, kind: stranger}\" for 12 messages of it, "
-      "\"{incident: 4}\" for /driver (died)";
-  EXPECT_EQ(call({}, false), offers + ", \"{incident: 3}\" for /slam (died)");
+      "\"{incident: 4}\" for /driver (silent)";
+  EXPECT_EQ(call({}, false), offers + ", \"{incident: 3}\" for /slam (silent)");
   call(asked("/slam"));
   EXPECT_EQ(call({}, false), offers) << "what is accepted already is not offered";
   alarm_->culprit.clear();
-  EXPECT_NE(call({}, false).find("alarm 5: nobody is to blame for it (died); name a component"),
+  EXPECT_NE(call({}, false).find("alarm 5: nobody is to blame for it (silent); name a component"),
             std::string::npos);
   EXPECT_EQ(accepted(), "/slam");
   EXPECT_EQ(changes_, 1);
@@ -177,8 +178,8 @@ TEST_F(AcceptCallsTest, ACallThatNamesNothingToTakeBackTellsWhatIsAccepted) {
 TEST_F(AcceptCallsTest, WhatIsNobodysFaultIsRefused) {
   for (const core::Kind kind :
        {core::Kind::kAllSilent, core::Kind::kNewMode, core::Kind::kBusyMachine}) {
-    core::Alarm& alarm = stands(
-        kind, {suspect(0, "/driver", core::Kind::kDied), suspect(1, "/base", core::Kind::kDied)});
+    core::Alarm& alarm = stands(kind, {suspect(0, "/driver", core::Kind::kSilent),
+                                       suspect(1, "/base", core::Kind::kSilent)});
     alarm.culprit.clear();
     const std::string answer = acceptAlarm(false);
     EXPECT_NE(answer.find(core::toString(kind)), std::string::npos) << answer;
@@ -229,11 +230,11 @@ TEST_F(AcceptCallsTest, AModeIsTakenWhileItStandsOrByItsIncidentAndTakenBack) {
 }
 
 TEST_F(AcceptCallsTest, WhileTheMachineIsBusyOnlyTheCulpritIsTaken) {
-  stands(core::Kind::kDied,
-         {suspect(0, "/driver", core::Kind::kDied), suspect(1, "/base", core::Kind::kLate)})
+  stands(core::Kind::kSilent,
+         {suspect(0, "/driver", core::Kind::kSilent), suspect(1, "/base", core::Kind::kLate)})
       .busy = core::Busy();
   acceptAlarm();
-  EXPECT_EQ(accepted(), "/driver on /scan (died)");
+  EXPECT_EQ(accepted(), "/driver on /scan (silent)");
 }
 
 TEST_F(AcceptCallsTest, OfConnectionsEachTopicIsTaken) {
@@ -253,7 +254,7 @@ TEST_F(AcceptCallsTest, OfConnectionsEachTopicIsTaken) {
 TEST_F(AcceptCallsTest, OfAnIncidentItsVictimsAreNotTaken) {
   self_awareness::Incident incident;
   incident.id = 3;
-  incident.kind = "died";
+  incident.kind = "silent";
   incident.component = "/driver";
   incident.together = {"/base"};
   incident.victims = {"/slam"};
@@ -261,7 +262,7 @@ TEST_F(AcceptCallsTest, OfAnIncidentItsVictimsAreNotTaken) {
   Accept::Request request;
   request.incident = 3;
   call(request);
-  EXPECT_EQ(accepted(), "/driver (died), /base (died)");
+  EXPECT_EQ(accepted(), "/driver (silent), /base (silent)");
   call(asked("/*", "", "", true));
   incidents_.incidents[0].kind = "slow";
   call(request);

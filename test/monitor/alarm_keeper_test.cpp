@@ -28,7 +28,7 @@ class AlarmKeeperTest : public InFolder {
     alarm.header.stamp = ros::Time(1000);
     alarm.level = level;
     alarm.alarm = 7;
-    alarm.kind = SelfAwareness::DIED;
+    alarm.kind = SelfAwareness::SILENT;
     alarm.component = "/camera";
     return alarm;
   }

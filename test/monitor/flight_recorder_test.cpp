@@ -64,7 +64,7 @@ class FlightRecorderTest : public InFolder {
   void stand() {
     SelfAwareness alarm;
     alarm.level = SelfAwareness::ERROR;
-    alarm.kind = SelfAwareness::DIED;
+    alarm.kind = SelfAwareness::SILENT;
     ros1::AlarmState state;
     state.resume(alarm, kStart, "");
     recorder().onAlarm(state);

@@ -10,7 +10,7 @@ ROOT = Path(__file__).resolve().parents[2]
 EXAMPLE = ROOT / 'examples' / 'train_and_judge.cpp'
 EMBEDDING = (ROOT / 'docs' / 'embedding.md').read_text(encoding='utf-8')
 
-ALARM = re.compile(r'died /laser, alarm at 60\.\d+ s\n'
+ALARM = re.compile(r'silent /laser, alarm at 60\.\d+ s\n'
                    r'/laser: silent for .*\n'
                    r'/slam: silent for .*\n')
 """What the example prints: the laser died after 60 s; the pose, which answers it, is a victim."""

@@ -91,7 +91,7 @@ class IncidentsTest(TrainedCase):
                 listener.await_settled()
             shown = run_program('incidents', str(opened.id), '--file',
                                 self.path('recorder/self_awareness.incidents'))
-            self.assertIn('/driver died', shown)
+            self.assertIn('/driver silent', shown)
             self.assertIn('score {} --model {} --report'.format(
                 opened.recording, self.path('model')), shown)
 
@@ -127,7 +127,7 @@ class IncidentsTest(TrainedCase):
             # By the log: a starved machine can make another one suspect, who is told at once.
             await_condition('its time is over', lambda: 'mute ended, since its time is over: '
                             '/driv*; 1 alarms and' in monitor.output, 60)
-            self.await_level(listener, DiagnosticStatus.ERROR, 'abnormal communication')
+            self.await_level(listener, DiagnosticStatus.ERROR, 'stopped sending')
             self.assertIsNone(listener.value('monitor', 'mute 1'))
             await_condition('it is told', lambda: '[ERROR]' in monitor.output, 20)
 
@@ -152,7 +152,7 @@ class IncidentsTest(TrainedCase):
                 maintenance = rospy.ServiceProxy(NODE + '/maintenance', Maintenance)
                 said = maintenance(duration=0.0)
                 self.assertTrue(said.success, said.message)
-                self.await_level(listener, DiagnosticStatus.ERROR, 'abnormal communication')
+                self.await_level(listener, DiagnosticStatus.ERROR, 'stopped sending')
                 self.assertFalse(maintenance(duration=0.0).success, 'there is none')
 
     @again_if_disturbed

@@ -92,7 +92,7 @@ class NewModeTest(TrainedCase):
                 nodes['/imu'].send(signal.SIGKILL)
                 await_condition('a death that is found', lambda: any(
                     status.level == SelfAwareness.ERROR and suspect.component == '/imu'
-                    and suspect.kind == SelfAwareness.DIED
+                    and suspect.kind == SelfAwareness.SILENT
                     for status in listener.statuses[off_again_at:]
                     for suspect in status.suspects), 30)
                 self.assertEqual(self.of_those_off(listener, off_again_at), [])

@@ -96,7 +96,7 @@ class RecoveryTest(MonitorCase):
 
     def rules(self, *steps: Dict[str, Any], **changed: Any) -> str:
         values = {'delay': 0.5, 'wait': 30.0, 'grace': 1.0, **changed, 'rules': [
-            {'component': PLAYER, 'kinds': ['died'], 'steps': list(steps)}]}
+            {'component': PLAYER, 'kinds': ['silent'], 'steps': list(steps)}]}
         with open(self.path('rules.yaml'), 'w') as file:
             yaml.safe_dump(values, file)
         return file.name
@@ -172,7 +172,7 @@ class RecoveryTest(MonitorCase):
             self.assertTrue(action.success, action.result)
             self.assertEqual((action.incident, action.component, action.kind, action.step,
                               action.action, action.result),
-                             (alarm.alarm, PLAYER, 'died', 1, 'stop /player',
+                             (alarm.alarm, PLAYER, 'silent', 1, 'stop /player',
                               '/player ended by SIGKILL, since it hangs'))
             status = recovery.await_status(DiagnosticStatus.OK, '1 actions so far')
             self.assertIn('stop /player', {each.key: each.value for each in status.values}[
@@ -192,7 +192,7 @@ class RecoveryTest(MonitorCase):
                 action: RecoveryAction = await_condition('an action is over', lambda: next(
                     (each for each in recovery.actions if each.over), None), 60)
             self.assertEqual((action.incident, action.component, action.kind, action.result),
-                             (alarm.alarm, PLAYER, 'died',
+                             (alarm.alarm, PLAYER, 'silent',
                               '/player ended by SIGKILL, since it hangs'))
             self.assertEqual(state_of(camera), 'T', 'there is no rule for it')
 

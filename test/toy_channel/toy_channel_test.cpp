@@ -204,8 +204,8 @@ TEST_F(ToyChannelTest, TheMonitorPublishesIt) {
   ASSERT_EQ(alarm->suspects.size(), 1U);
   EXPECT_EQ(alarm->suspects[0].source, "/a");
   EXPECT_EQ(alarm->suspects[0].reason.rfind(words_, 0), 0U);
-  EXPECT_EQ(alarm->message.find("abnormal communication (bursts), /a on /x: " + words_), 0U)
-      << alarm->message;
+  EXPECT_EQ(alarm->message.rfind("/a (/x) ", 0), 0U) << alarm->message;
+  EXPECT_NE(alarm->message.find(words_), std::string::npos) << alarm->message;
   bool said = false;
   for (const auto& array : written<diagnostic_msgs::DiagnosticArray>("/diagnostics")) {
     for (const diagnostic_msgs::DiagnosticStatus& status : array.status) {

@@ -77,7 +77,7 @@ Suspect Blame::suspectOf(EventId id) const {
 Reason Blame::silence(EventId id, double seconds, bool lasts) const {
   const Usual& usual = usual_[id];
   Reason reason;
-  reason.kind = lasts ? Kind::kDied : Kind::kLate;
+  reason.kind = lasts ? Kind::kSilent : Kind::kLate;
   reason.unit = unit::kSeconds;
   reason.value = seconds;
   reason.lasted = seconds;

@@ -28,7 +28,7 @@ bool fits(const Acceptance& accepted, const Acceptance& pattern) {
 }  // namespace
 
 Acceptance::Extent Acceptance::extent() const {
-  switch (kind.value_or(Kind::kDied)) {
+  switch (kind.value_or(Kind::kSilent)) {
     case Kind::kStranger:
       return Extent::kStranger;
     case Kind::kSlow:
@@ -52,7 +52,9 @@ Acceptance::Extent Acceptance::extent() const {
       return Extent::kMode;
     case Kind::kNeverCame:
       return Extent::kAbsence;
-    case Kind::kDied:
+    case Kind::kSilent:
+    case Kind::kTopicSilent:
+    case Kind::kUnanswered:
       break;
   }
   return Extent::kAll;

@@ -20,9 +20,12 @@ Kind kindOf(const Silent& silent) {
 
 std::vector<Suspect> withComponents(std::vector<Suspect> suspects, const Vocabulary& vocabulary) {
   for (Suspect& suspect : suspects) {
-    if (suspect.component.empty() && suspect.id < vocabulary.size()) {
+    if (suspect.id < vocabulary.size()) {
       const EventType& type = vocabulary.at(suspect.id);
-      suspect.component = componentOf(type.source, type.scope);
+      suspect.topic = type.scope;
+      if (suspect.component.empty()) {
+        suspect.component = componentOf(type.source, type.scope);
+      }
     }
   }
   return suspects;
@@ -34,26 +37,8 @@ void blame(const Suspect& suspect, Alarm& alarm) {
   alarm.kind = suspect.reason.kind;
 }
 
-/// The suspect that is the culprit; null: there is none.
-const Suspect* culpritOf(const Alarm& alarm) {
-  for (const std::vector<Suspect>* suspects : {&alarm.suspects, &alarm.later}) {
-    for (const Suspect& suspect : *suspects) {
-      if (suspect.component == alarm.culprit && !alarm.culprit.empty()) {
-        return &suspect;
-      }
-    }
-  }
-  return nullptr;
-}
-
-/// Whether who has not come should have done so before a stamp [ns].
-bool beganBefore(const Suspect& suspect, std::int64_t stamp) {
-  const double usual = suspect.reason.after.empty() ? suspect.reason.usual_longest : 0;
-  return static_cast<double>(suspect.onset) + usual * 1e9 < static_cast<double>(stamp);
-}
-
-/// Takes in that a culprit has an excuse, or that somebody is to blame for what began before. Who
-/// is to blame is settled when an alarm is raised, and changes for nothing else.
+/// Takes in that a culprit has an excuse, or that who is dead has none any more. Who is to blame
+/// is settled when an alarm is raised, and changes for nothing else.
 void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Alarm& alarm) {
   const bool was_busy = alarm.kind == Kind::kBusyMachine;
   const bool absent =
@@ -61,18 +46,13 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
   if (was_busy && !verdict.busy && absent) {  // a machine that is busy no more is not to blame
     blame(suspects.front(), alarm);
   }
-  const Suspect* const culprit = culpritOf(alarm);
+  const Suspect* const culprit = alarm.suspectToBlame();
   const bool is_named = std::any_of(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
     return suspect.component == alarm.culprit;
   });
-  if (culprit != nullptr && is_named) {
-    const Suspect& first = suspects.front();
-    if (absent && first.component != alarm.culprit && beganBefore(first, culprit->onset)) {
-      blame(first, alarm);
-    }
-  } else if (verdict.busy &&
-             (culprit != nullptr ? verdict.busy->since <= culprit->onset
-                                 : alarm.kind == Kind::kNewMode || alarm.suspects.empty())) {
+  if (!(culprit != nullptr && is_named) && verdict.busy &&
+      (culprit != nullptr ? verdict.busy->since <= culprit->onset
+                          : alarm.kind == Kind::kNewMode || alarm.suspects.empty())) {
     alarm.kind = Kind::kBusyMachine;
     alarm.culprit.clear();
     alarm.reason.clear();
@@ -108,6 +88,17 @@ void growWith(const Verdict& verdict, Alarm& alarm) {
 }
 
 }  // namespace
+
+const Suspect* Alarm::suspectToBlame() const {
+  for (const std::vector<Suspect>* named : {&suspects, &later}) {
+    for (const Suspect& suspect : *named) {
+      if (suspect.component == culprit && !culprit.empty()) {
+        return &suspect;
+      }
+    }
+  }
+  return nullptr;
+}
 
 std::optional<Alarm> Alarms::add(const Verdict& verdict, std::int64_t window,
                                  const Vocabulary& vocabulary) {

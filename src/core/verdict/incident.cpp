@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "self_awareness/core/verdict/dependents.h"
+#include "self_awareness/core/verdict/sentence.h"
 
 namespace self_awareness::core {
 namespace {
@@ -26,12 +27,8 @@ bool sameCause(const First& first, const std::string& first_cause, const Second&
 }
 
 std::optional<std::int64_t> silentSince(const Suspect& suspect) {
-  const Reason& reason = suspect.reason;
-  if (reason.kind != Kind::kDied || reason.unit != unit::kSeconds ||
-      !std::isfinite(reason.value)) {
-    return std::nullopt;
-  }
-  return suspect.since - static_cast<std::int64_t>(std::llround(reason.value * 1e9));
+  return isSilence(suspect.reason.kind) && suspect.onset > 0 ? std::optional(suspect.onset)
+                                                             : std::nullopt;
 }
 
 bool atOnce(const Occurrence::Named& first, const Occurrence::Named& other, bool graph_is_known) {
@@ -172,7 +169,7 @@ Occurrence occurrenceOf(const Alarm& alarm) {
   occurrence.over = alarm.over;
   occurrence.kind = alarm.kind;
   occurrence.culprit = alarm.culprit;
-  occurrence.reason = alarm.reason;
+  occurrence.reason = sentence(alarm);
   if (alarm.silent) {
     occurrence.hosts = alarm.silent->hosts;
     if (alarm.kind == Kind::kNewMode) {

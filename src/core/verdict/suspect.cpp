@@ -29,8 +29,12 @@ std::string number(std::size_t count, const std::string& of) {
 
 std::string toString(Kind kind) {
   switch (kind) {
-    case Kind::kDied:
-      return "died";
+    case Kind::kSilent:
+      return "silent";
+    case Kind::kTopicSilent:
+      return "topic silent";
+    case Kind::kUnanswered:
+      return "unanswered";
     case Kind::kSlow:
       return "slow";
     case Kind::kFast:
@@ -81,7 +85,11 @@ bool isMissing(Kind kind) {
 }
 
 bool isAbsence(Kind kind) {
-  return kind == Kind::kDied || kind == Kind::kNeverCame;
+  return isSilence(kind) || kind == Kind::kNeverCame;
+}
+
+bool isSilence(Kind kind) {
+  return kind == Kind::kSilent || kind == Kind::kTopicSilent || kind == Kind::kUnanswered;
 }
 
 Reason strangerIn(std::size_t events) {

@@ -47,7 +47,7 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
     message_.evidence = verdict.evidence;
     shared_ = inWords(verdict, circumstances.load);
   }
-  message_.message = wording(verdict, message_.evidence, message_.suspects,
+  message_.message = wording(verdict, alarms_.standing(), message_.evidence,
                              toMessages(verdict.new_suspects, vocabulary), shared_);
   if (verdict.alarm) {
     recording_ = circumstances.recording;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "self_awareness/SelfAwareness.h"
+#include "self_awareness/core/verdict/sentence.h"
 #include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
@@ -64,33 +65,27 @@ std::string withSource(const std::string& source, const std::string& of_topic) {
   return (source.empty() ? "" : source + " on ") + of_topic;
 }
 
-std::string wording(const core::Verdict& verdict, const std::string& evidence,
-                    const std::vector<self_awareness::Suspect>& suspects,
+std::string wording(const core::Verdict& verdict, const std::optional<core::Alarm>& standing,
+                    const std::string& evidence,
                     const std::vector<self_awareness::Suspect>& new_suspects,
                     const std::string& shared) {
   if (!verdict.threshold) {
     return "not calibrated: find limits with rosrun self_awareness calibrate";
   }
-  if (verdict.alarm || verdict.suspicion) {
-    std::string message = verdict.alarm ? "abnormal communication" : "suspicion of a fault";
-    message += " (" + evidence + ")";
-    if (!shared.empty()) {
-      message += ", " + shared;
-    }
-    if (!suspects.empty()) {
-      message += ", " + describe(suspects.front());
-    }
-    if (suspects.size() > 1) {
-      message += " (and " + std::to_string(suspects.size() - 1) + " more)";
-    }
-    for (const self_awareness::Suspect& suspect : new_suspects) {
-      if (suspects.empty() || describe(suspect) != describe(suspects.front())) {
-        message += "; now also " + describe(suspect);
-      }
-    }
-    return message;
+  if (!standing) {
+    return verdict.settling ? "settling" : "normal communication";
   }
-  return verdict.settling ? "settling" : "normal communication";
+  std::string message = core::sentence(*standing, shared);
+  if (!shared.empty() && !standing->culprit.empty()) {
+    message += "; " + shared;
+  }
+  message += " (" + evidence + ")";
+  for (const self_awareness::Suspect& suspect : new_suspects) {
+    if (suspect.component != standing->culprit) {
+      message += "; now also " + describe(suspect);
+    }
+  }
+  return message;
 }
 
 }  // namespace self_awareness::ros1

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "self_awareness/Suspect.h"
 #include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/verdict/alarm.h"
 #include "self_awareness/core/verdict/detector.h"
 
 namespace self_awareness::ros1 {
@@ -25,11 +27,12 @@ std::string describe(const self_awareness::Suspect& suspect);
 std::string withSource(const std::string& source, const std::string& of_topic);
 
 /// The verdict in words.
-/// @param evidence, suspects those of the last window that had any, while the level is not OK
-/// @param shared what is wrong with what components share, in words; empty: nothing
+/// @param standing the alarm or the suspicion that stands: its sentence comes first
+/// @param evidence of the last window that had any, while the level is not OK
 /// @param new_suspects those of this window
-std::string wording(const core::Verdict& verdict, const std::string& evidence,
-                    const std::vector<self_awareness::Suspect>& suspects,
+/// @param shared what is wrong with what components share, in words; empty: nothing
+std::string wording(const core::Verdict& verdict, const std::optional<core::Alarm>& standing,
+                    const std::string& evidence,
                     const std::vector<self_awareness::Suspect>& new_suspects,
                     const std::string& shared = "");
 

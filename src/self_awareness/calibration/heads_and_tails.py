@@ -191,7 +191,7 @@ def stopped_before_end(recording: RecordingEvents, alarm: Alarm) -> Optional[flo
     else:
         last = {suspect: recording.stamps[recording.ids == suspect.id][-1]
                 for suspect in [*alarm.suspects, *alarm.later]
-                if suspect.reason.kind == 'died' and not suspect.reason.after}
+                if suspect.reason.kind in ('silent', 'topic silent') and not suspect.reason.after}
         since = [int(stamp) for suspect, stamp in last.items() if stamp <= suspect.since]
     before = [(recording.end - stamp) / SECOND_NS for stamp in since]
     return max(before) if before and max(before) <= LAST_S else None

@@ -18,7 +18,7 @@ STALE_S = 5.0
 _BARS = '▁▂▃▄▅▆▇█'
 _LONGEST_CURVE = 400
 _WHOLE, _ITSELF = 'communication', 'monitor'
-_DEATHS = ('died', 'never came')
+_DEATHS = ('silent', 'topic silent', 'unanswered', 'never came')
 _IN_GRAPH = 'in the graph'  # the state of a node that the model does not know
 
 

@@ -9,8 +9,8 @@ from self_awareness import yaml_file
 from self_awareness.recovery.history import MOST
 from self_awareness.yaml_section import Section, shown
 
-KINDS = ('died', 'slow', 'fast', 'late', 'early', 'out of order', 'never came',
-         'stale', 'lossy', 'other size', 'stuck')
+KINDS = ('silent', 'topic silent', 'unanswered', 'slow', 'fast', 'late', 'early', 'out of order',
+         'never came', 'stale', 'lossy', 'other size', 'stuck')
 """Of incidents that blame a component of the robot, as SelfAwareness.msg has them."""
 
 MOST_RULES = 100

@@ -19,7 +19,7 @@ _ABNORMAL_S = 0.5
 """Who was abnormal so recently is so now [s]: not every window of a slow node is."""
 
 _ERROR = 2  # of SelfAwareness
-_DIED = 'died'
+_DIED = ('silent', 'topic silent', 'unanswered')
 
 
 @dataclass
@@ -159,7 +159,7 @@ class Watch:
             suspects: that a window names of it.
             named: since when windows name it [s]; it counts where a silence is not known.
         """
-        died = [each for each in suspects if each.kind == _DIED]
+        died = [each for each in suspects if each.kind in _DIED]
         silent = [each.silence for each in died if not math.isnan(each.silence)]
         stamp = self._status.header.stamp.to_nsec()
         before = self._silences.get(name)
@@ -178,7 +178,7 @@ class Watch:
     def _fault(self, incident: int, component: str, of_alarm: str, stands: bool) -> Fault:
         kind = self._kind(component, of_alarm)
         named = self._named.get(component)
-        if named is None or kind != _DIED:
+        if named is None or kind not in _DIED:
             return Fault(incident, component, kind, stands)
         return Fault(incident, component, kind, stands, named.dead_since)
 

@@ -35,8 +35,7 @@ def details(incident: KeptIncident, actions: Sequence[Action]) -> List[str]:
         incident: to be shown.
         actions: of the recovery, about this and others.
     """
-    rows = [('what', f'{what(incident)}: {incident.reason}' if incident.reason
-             else what(incident)),
+    rows = [('what', incident.reason or what(incident)),
             ('opened', moment(incident.opened)),
             ('grown', moment(incident.grown)),
             ('unknown since' if incident.unknown else 'over' if incident.over else 'open',
@@ -93,7 +92,7 @@ def named(incident: KeptIncident) -> List[str]:
 
 
 def what(incident: KeptIncident) -> str:
-    """Return what is wrong, and whose fault it is: '/player died'."""
+    """Return what is wrong, and whose fault it is: '/player silent'."""
     return f'{incident.component} {incident.kind}' if incident.component else incident.kind
 
 

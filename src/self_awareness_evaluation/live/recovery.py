@@ -38,7 +38,7 @@ def command(rules: Path, components: Sequence[str]) -> List[str]:
     """
     rules.write_text(yaml.safe_dump({
         'delay': DELAY_S, 'grace': _GRACE_S, 'limit': _MOST_STEPS, 'limit_of_all': _MOST_STEPS,
-        'rules': [{'component': f'/{name}', 'kinds': ['died', 'never came'],
+        'rules': [{'component': f'/{name}', 'kinds': ['silent', 'never came'],
                    'steps': [{'stop': [f'/{name}']}]} for name in components]}))
     return ['rosrun', 'self_awareness', 'recovery.py', str(rules), f'__name:={_RECOVERY[1:]}']
 

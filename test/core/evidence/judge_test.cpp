@@ -276,7 +276,8 @@ TEST_F(EvidenceJudgeTest, WhatIsAcceptedIsNoEvidenceAndAllElseIs) {
   const Judgement of_a = judgedWith(allOf({accepted("/b")}));
   EXPECT_TRUE(of_a.abnormal) << "another one is silent, too";
   EXPECT_EQ(named(of_a), (std::set<EventId>{kA}));
-  const Judgement normal = judgedWith(allOf({accepted("/b"), accepted("/a*", "/x", Kind::kDied)}));
+  const Judgement normal =
+      judgedWith(allOf({accepted("/b"), accepted("/a*", "/x", Kind::kSilent)}));
   EXPECT_EQ(normal.score.value(), 0);
   EXPECT_FALSE(normal.abnormal);
 }
@@ -504,7 +505,7 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStranger) {
   const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, 50 * kMillisecond);
   ASSERT_EQ(named.size(), 2U);
   EXPECT_EQ(named[0].id, kA);
-  EXPECT_EQ(named[0].reason.kind, Kind::kDied);
+  EXPECT_EQ(named[0].reason.kind, Kind::kSilent);
   EXPECT_EQ(heard_->at(named[1].id).source, "/rostopic");
 }
 

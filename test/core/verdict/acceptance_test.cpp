@@ -26,7 +26,7 @@ TEST(Acceptances, AModeCoversThatThoseOfItAreOffTogetherAndNoDeath) {
   EXPECT_FALSE(accepted_now.coversMode({"/arm", "/imu"}));
   accepted_now.add(acceptedMode({"/imu"}));
   EXPECT_FALSE(accepted_now.coversMode({"/arm", "/imu"})) << "they are of two modes";
-  EXPECT_FALSE(accepted_now.covers("/arm", "/joints", Kind::kDied));
+  EXPECT_FALSE(accepted_now.covers("/arm", "/joints", Kind::kSilent));
   EXPECT_FALSE(accepted_now.covers("/arm", "/joints", Kind::kSlow));
   EXPECT_FALSE(accepted_now.covers("", "", Kind::kAllSilent));
   EXPECT_TRUE(accepted_now.list().front().isAbout("/arm", "/joints"));
@@ -53,13 +53,13 @@ TEST(Acceptances, OfConnectionsTheTopicIsTheOneThatIsNotSubscribedTo) {
   const Acceptances accepted_now = allOf({accepted("/faces", "/image", Kind::kUnsubscribed)});
   EXPECT_TRUE(accepted_now.covers("/faces", "/image", Kind::kUnsubscribed));
   EXPECT_FALSE(accepted_now.covers("/faces", "/depth", Kind::kUnsubscribed));
-  EXPECT_FALSE(accepted_now.covers("/faces", "/image", Kind::kDied));
+  EXPECT_FALSE(accepted_now.covers("/faces", "/image", Kind::kSilent));
 }
 
 TEST(Acceptances, WhoMayBeSilentMayDoAnything) {
-  for (const std::optional<Kind>& kind : {std::optional<Kind>(), {Kind::kDied}}) {
+  for (const std::optional<Kind>& kind : {std::optional<Kind>(), {Kind::kSilent}}) {
     const Acceptances accepted_now = allOf({accepted("", "/image", kind)});
-    EXPECT_TRUE(accepted_now.covers("/camera", "/image", Kind::kDied));
+    EXPECT_TRUE(accepted_now.covers("/camera", "/image", Kind::kSilent));
     EXPECT_TRUE(accepted_now.covers("/camera", "/image", Kind::kSlow));
     EXPECT_FALSE(accepted_now.covers("/camera", "/info", Kind::kSlow));
   }
@@ -70,7 +70,7 @@ TEST(Acceptances, WhoMayBeAbsentIsJudgedWhileThere) {
   accepted_now.add(accepted("/joy*", "", Kind::kNeverCame));
   EXPECT_TRUE(accepted_now.mayBeAbsent("/joystick", "/joy"));
   EXPECT_FALSE(accepted_now.mayBeAbsent("/camera", "/image"));
-  for (const Kind kind : {Kind::kDied, Kind::kSlow, Kind::kStranger}) {
+  for (const Kind kind : {Kind::kSilent, Kind::kSlow, Kind::kStranger}) {
     EXPECT_FALSE(accepted_now.covers("/joystick", "/joy", kind)) << toString(kind);
   }
   Acceptances all;
@@ -87,7 +87,7 @@ TEST(Acceptances, EachIsThereOnceAndTakenBack) {
   EXPECT_EQ(accepted_now.list().size(), 1U);
   EXPECT_TRUE(accepted_now.remove(accepted("/camera", "/image")).empty());
   EXPECT_EQ(accepted_now.remove(accepted("/camera", "")).size(), 1U);
-  EXPECT_FALSE(accepted_now.covers("/camera", "/image", Kind::kDied));
+  EXPECT_FALSE(accepted_now.covers("/camera", "/image", Kind::kSilent));
 }
 
 TEST(Acceptances, AllThatFitsIsTakenBack) {

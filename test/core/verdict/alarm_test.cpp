@@ -69,7 +69,7 @@ class AlarmsTest : public testing::Test {
 TEST_F(AlarmsTest, AnAlarmLastsFromTheWindowThatRaisedItToTheOneThatEndedIt) {
   EXPECT_FALSE(add(verdict(kOk)));
   EXPECT_FALSE(alarms_.standing());
-  EXPECT_FALSE(add(verdict(kAlarm, {suspect(1, Kind::kDied), suspect(0, Kind::kSlow)})));
+  EXPECT_FALSE(add(verdict(kAlarm, {suspect(1, Kind::kSilent), suspect(0, Kind::kSlow)})));
   ASSERT_TRUE(alarms_.standing());
   EXPECT_FALSE(alarms_.standing()->over);
   add(verdict(kAlarm));
@@ -80,7 +80,7 @@ TEST_F(AlarmsTest, AnAlarmLastsFromTheWindowThatRaisedItToTheOneThatEndedIt) {
   EXPECT_EQ(ended->begin, kStart + 2 * kWindow);
   EXPECT_EQ(ended->end, kStart + 4 * kWindow);
   EXPECT_TRUE(ended->over);
-  EXPECT_EQ(ended->kind, Kind::kDied);
+  EXPECT_EQ(ended->kind, Kind::kSilent);
   EXPECT_EQ(ended->culprit, "/b");
   EXPECT_EQ(ended->evidence, "overdue");
   EXPECT_EQ(ended->lowest_score, -2);
@@ -90,8 +90,8 @@ TEST_F(AlarmsTest, AnAlarmLastsFromTheWindowThatRaisedItToTheOneThatEndedIt) {
 TEST_F(AlarmsTest, WhoIsNamedLaterChangesNeitherIdNorCulprit) {
   add(verdict(kAlarm, {suspect(0, Kind::kLate)}));
   const Alarm before = *alarms_.standing();
-  Verdict second = verdict(kAlarm, {suspect(1, Kind::kDied), suspect(0, Kind::kLate)});
-  second.new_suspects = {suspect(1, Kind::kDied)};
+  Verdict second = verdict(kAlarm, {suspect(1, Kind::kSilent), suspect(0, Kind::kLate)});
+  second.new_suspects = {suspect(1, Kind::kSilent)};
   add(second);
   const Alarm& after = *alarms_.standing();
   EXPECT_EQ(after.id, before.id);
@@ -134,14 +134,14 @@ TEST_F(AlarmsTest, WhereTheMachineIsBusyNobodyIsToBlame) {
   expectBlamed("", Kind::kBusyMachine);
   EXPECT_EQ(alarms_.standing()->busy->late, 12U);
   alarms_ = {};
-  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   addBusy({12, 26});
   expectBlamed("", Kind::kBusyMachine);
 }
 
 TEST_F(AlarmsTest, ABusyMachineDoesNotExcuseWhoDied) {
-  addBusy({12, 26}, {suspect(1, Kind::kDied)});
-  expectBlamed("/b", Kind::kDied);
+  addBusy({12, 26}, {suspect(1, Kind::kSilent)});
+  expectBlamed("/b", Kind::kSilent);
   EXPECT_TRUE(alarms_.standing()->busy);
 }
 
@@ -149,9 +149,9 @@ TEST_F(AlarmsTest, WhatBeganBeforeAnExcuseStaysWhatItWas) {
   const std::int64_t later = kStart + 400 * kWindow;
   for (const bool mode : {false, true}) {
     alarms_ = {};
-    add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+    add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
     addSilent({{}, {"/a", "/b"}, later, mode});
-    expectBlamed("/b", Kind::kDied);
+    expectBlamed("/b", Kind::kSilent);
   }
   alarms_ = {};
   add(verdict(kAlarm, {suspect(1, Kind::kSlow)}));
@@ -159,35 +159,19 @@ TEST_F(AlarmsTest, WhatBeganBeforeAnExcuseStaysWhatItWas) {
   expectBlamed("/b", Kind::kSlow);
 }
 
-TEST_F(AlarmsTest, WhoWasMissedBeforeTheCulpritIsFoundToBeIt) {
-  Suspect victim = suspect(1, Kind::kDied);
-  victim.onset = kStart;
-  add(verdict(kAlarm, {victim}));
-  Suspect root = suspect(0, Kind::kDied);
-  root.abnormal = true;
-  root.reason.usual_longest = 1;
-  for (const double before : {0.5, 1.5}) {
-    root.onset = kStart - static_cast<std::int64_t>(before * 1e9);
-    Verdict next = verdict(kAlarm, {root, victim});
-    next.new_suspects = {root};
-    add(next);
-    expectBlamed(before < 1 ? "/b" : "/a", Kind::kDied);
-  }
-}
-
 TEST_F(AlarmsTest, WhoIsDeadOnceTheMachineIsFreeIsToBlame) {
   addBusy({12, 26});
   EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
-  Suspect dead = suspect(0, Kind::kDied);
+  Suspect dead = suspect(0, Kind::kSilent);
   add(verdict(kAlarm, {dead}));
   EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine) << "within its limit";
   dead.abnormal = true;
   add(verdict(kAlarm, {dead}));
-  expectBlamed("/a", Kind::kDied);
+  expectBlamed("/a", Kind::kSilent);
 }
 
 TEST_F(AlarmsTest, WhoWasSilentFirstIsNotToBlameWhereAllAre) {
-  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   EXPECT_EQ(alarms_.standing()->culprit, "/b");
   addSilent({{}, {"/a", "/b"}, kStart});
   expectBlamed("", Kind::kAllSilent);
@@ -195,7 +179,7 @@ TEST_F(AlarmsTest, WhoWasSilentFirstIsNotToBlameWhereAllAre) {
 }
 
 TEST_F(AlarmsTest, WhereSomeStoppedTogetherItIsANewModeAndNobodyIsToBlame) {
-  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   Verdict mode = verdict(kSuspicion);
   mode.evidence = "new mode";
   mode.silent = Silent{{}, {"/a", "/b", "/c", "/d", "/e"}, kStart, true};
@@ -224,20 +208,20 @@ TEST_F(AlarmsTest, WhoStopsOnABusyMachineIsInANewModeOnceThatIsFree) {
 }
 
 TEST_F(AlarmsTest, ComputersThatFellSilentAreNamedAndNobodyIsToBlame) {
-  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   addSilent({{"base"}, {"/a", "/b"}, kStart});
   expectBlamed("", Kind::kAllSilent);
   EXPECT_EQ(alarms_.standing()->reason, "everything on host base fell silent: 2 nodes");
   addSilent({{"arm", "base", "head"}, {"/a", "/b", "/c"}, kStart});
-  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   EXPECT_EQ(alarms_.standing()->reason,
             "everything on hosts arm, base and head fell silent: 3 nodes");
 }
 
 TEST_F(AlarmsTest, WhoDiedOnAnotherComputerBeforeIsStillToBlame) {
-  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   addSilent({{"base"}, {"/a", "/c"}, kStart});
-  expectBlamed("/b", Kind::kDied);
+  expectBlamed("/b", Kind::kSilent);
   EXPECT_EQ(alarms_.standing()->silent->hosts, std::vector<std::string>{"base"});
 }
 
@@ -262,7 +246,7 @@ TEST_F(AlarmsTest, WhereNobodyStandsOutThereIsNoCulprit) {
 
 TEST_F(AlarmsTest, MayBeEndedByHand) {
   EXPECT_FALSE(alarms_.end(kStart));
-  add(verdict(kAlarm, {suspect(0, Kind::kDied)}));
+  add(verdict(kAlarm, {suspect(0, Kind::kSilent)}));
   const std::optional<Alarm> ended = alarms_.end(kStart + 7);
   ASSERT_TRUE(ended);
   EXPECT_TRUE(ended->over);
@@ -284,7 +268,7 @@ TEST_F(AlarmsTest, AnAlarmOfBeforeTheStartKeepsItsIdAndItsCulprit) {
   const std::optional<Alarm> ended = add(verdict(kOk));
   ASSERT_TRUE(ended);
   EXPECT_EQ(ended->id, before.id);
-  add(verdict(kAlarm, {suspect(0, Kind::kDied)}));
+  add(verdict(kAlarm, {suspect(0, Kind::kSilent)}));
   EXPECT_EQ(alarms_.standing()->id, before.id + 1);
 }
 

@@ -41,20 +41,20 @@ TEST_F(DetectorAcceptTest, WhatIsAcceptedWhileItsWindowIsOpenIsNoNews) {
 
 TEST_F(DetectorAcceptTest, AResumedAlarmDoesNotWaitForWhoMayBeSilent) {
   Suspect dead = suspect("/7", kUnknownId);
-  dead.reason.kind = Kind::kDied;
+  dead.reason.kind = Kind::kSilent;
   for (const bool before : {false, true}) {
     start();
     if (before) {
-      detector_->accept(ofUnknown(Kind::kDied));
+      detector_->accept(ofUnknown(Kind::kSilent));
     }
     detector_->resume({dead});
     if (!before) {
       windows(100);
       EXPECT_TRUE(verdict_.alarm) << "it is not heard";
-      detector_->accept(allOf({accepted("/0", "", Kind::kDied)}));
+      detector_->accept(allOf({accepted("/0", "", Kind::kSilent)}));
       windows(100);
       EXPECT_TRUE(verdict_.alarm) << "another one is accepted";
-      detector_->accept(ofUnknown(Kind::kDied));
+      detector_->accept(ofUnknown(Kind::kSilent));
     }
     windows(40);
     EXPECT_FALSE(verdict_.alarm) << before;

@@ -112,7 +112,7 @@ TEST_F(DetectorTest, NamesTheComponentThatFellSilent) {
   ASSERT_FALSE(seen_.back().suspects.empty());
   const Suspect& first = seen_.back().suspects.front();
   EXPECT_EQ(model_->vocabulary().at(first.id), kLaser);
-  EXPECT_EQ(first.reason.kind, Kind::kDied);
+  EXPECT_EQ(first.reason.kind, Kind::kSilent);
   EXPECT_NEAR(first.reason.value, 5.0, 0.3);
   EXPECT_NE(first.reason.words.find("silent for 4."), std::string::npos) << first.reason.words;
   EXPECT_NE(first.reason.words.find("usually every 0.080 to 0.090 s"), std::string::npos)

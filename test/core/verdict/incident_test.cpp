@@ -276,8 +276,7 @@ TEST(OccurrenceOf, AnAlarmTellsSinceWhenWhoIsSilent) {
   Suspect dead;
   dead.component = "/a";
   dead.since = 10 * kSecond;
-  dead.reason.unit = unit::kSeconds;
-  dead.reason.value = 1.5;
+  dead.onset = 8500 * kSecond / 1000;
   alarm.suspects = {dead};
   Suspect slow = dead;
   slow.component = "/b";

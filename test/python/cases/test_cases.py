@@ -28,7 +28,7 @@ def _bags(cases: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def check_death(said: Dict[str, Any]) -> None:
     """Check that there is one alarm, to the end, and one incident, since the death."""
     alarm, = [alarm for alarm in said['alarms'] if alarm['level'] == 'ERROR']
-    assert alarm['culprit'] == '/lidar' and alarm['kind'] == 'died' and not alarm['over']
+    assert alarm['culprit'] == '/lidar' and alarm['kind'] == 'silent' and not alarm['over']
     incident, = said['incidents']
     assert incident['level'] == 'ERROR' and incident['cause'] == '/lidar'
     since = min(each['from_s'] for each in incident['silent'] if each['component'] == '/lidar')
@@ -66,7 +66,7 @@ def test_a_stall_takes_no_death_away(cases, scored, tmp_path: Path) -> None:
     recording, = scored(str(cases.make('01_stall_hides_a_death', tmp_path) / 'crash.bag'))
     assert recording['incidents'][0]['headline'] == '/lidar and /amcl stopped sending at 50.0 s.'
     alarm, = [each for each in recording['alarms'] if each['level'] == 'ERROR']
-    assert (alarm['kind'], alarm['culprit'], alarm['over']) == ('died', '/lidar', False)
+    assert (alarm['kind'], alarm['culprit'], alarm['over']) == ('silent', '/lidar', False)
 
 
 # Who sends what: another node, two of one name, a player

@@ -60,7 +60,7 @@ def test_scan_and_slash_scan_are_one_topic(made, tmp_path: Path) -> None:
     model = trained(made['05'], tmp_path / 'm')
     assert errors(model, made['05'] / 'normal_with_slash.bag') == []
     assert errors(model, made['05'] / 'crash_with_slash.bag') == [
-        ('died', '/lidar', pytest.approx(40.5, abs=0.5))]
+        ('silent', '/lidar', pytest.approx(40.5, abs=0.5))]
 
 
 def test_a_node_with_a_short_random_number_is_one(made, tmp_path: Path, capsys) -> None:
@@ -68,4 +68,4 @@ def test_a_node_with_a_short_random_number_is_one(made, tmp_path: Path, capsys) 
     assert 'differ by a number alone' in capsys.readouterr().out
     assert '/matlab_global_node' in [each.component for each in load(model).coverage()]
     assert errors(model, made['23'] / 'crash.bag') == [
-        ('died', '/matlab_global_node', pytest.approx(50.5, abs=0.5))]
+        ('silent', '/matlab_global_node', pytest.approx(50.5, abs=0.5))]

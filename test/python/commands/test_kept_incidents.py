@@ -24,7 +24,7 @@ NOON_S = 1_790_000_000  # 2026-09-21 14:13:20 UTC
 def incident(number: int, component: str, opened_s: float, **fields: Any) -> Incident:
     opened = genpy.Time.from_sec(opened_s)
     return Incident(**{**dict(
-        id=number, last=number, level=SelfAwareness.ERROR, kind='died', component=component,
+        id=number, last=number, level=SelfAwareness.ERROR, kind='silent', component=component,
         reason='silent for 2.3 s', opened=opened, grown=opened, over=True, alarms=1,
         ended=opened + genpy.Duration(20)), **fields})
 
@@ -68,8 +68,9 @@ def test_one_line_for_an_incident(run: Callable[..., str]) -> None:
     head, columns, player, busy, camera, near = run().splitlines()
     assert head.endswith('watch.incidents: incidents: 3, open: 1')
     assert columns.split()[0] == 'opened'
-    assert player.split() == ['2026-09-21', '14:13:20', 'UTC', '20.0', 's', '/player', 'died', '7',
-                              '2', '/slam,', '/navigation,', '/camera', 'and', '1', 'more', '1']
+    assert player.split() == ['2026-09-21', '14:13:20', 'UTC', '20.0', 's', '/player', 'silent',
+                              '7', '2', '/slam,', '/navigation,', '/camera', 'and', '1', 'more',
+                              '1']
     assert 'busy machine' in busy and ' open ' in camera
     assert near.strip().startswith('besides, components with near misses only: 1')
     assert '/quiet' in run('--near-misses')
@@ -92,7 +93,7 @@ def test_filters(run: Callable[..., str]) -> None:
 def test_one_is_shown_with_its_record_and_the_way_to_its_report(
         run: Callable[..., str], tmp_path: Path, capsys: Any) -> None:
     shown = run('1')
-    assert '/player died: silent for 2.3 s' in shown
+    assert 'silent for 2.3 s' in shown
     assert '7 times, and 2 near misses' in shown
     assert '/slam, /navigation' in shown and '/camera, /microphone' in shown
     assert '/gone/alarm.bag (not there' in shown and '--report' not in shown
@@ -123,7 +124,7 @@ def test_the_incidents_of_an_older_monitor_are_known(tmp_path: Path, capsys: Any
     assert text != Incidents._full_text
     former = genpy.dynamic.generate_dynamic('self_awareness/Incidents', text)
     kept = former['self_awareness/Incidents']()
-    one = former['self_awareness/Incident'](id=7, last=7, level=SelfAwareness.ERROR, kind='died',
+    one = former['self_awareness/Incident'](id=7, last=7, level=SelfAwareness.ERROR, kind='silent',
                                             component='/player', alarms=3)
     kept.incidents = [one]
     path = tmp_path / 'w.incidents'
@@ -161,11 +162,11 @@ def test_what_the_recovery_did_is_shown_with_the_incident(run: Callable[..., str
                                                           capsys: Any) -> None:
     done = history.History()
     for number, result in ((1, '/player ended by SIGKILL'), (1, '/slam ended'), (99, 'other')):
-        done.begin(history.Action(number, '/player', 'died', 1, 2, 'stop /player',
+        done.begin(history.Action(number, '/player', 'silent', 1, 2, 'stop /player',
                                   NOON_S * SECOND_NS, False))
         done.end(True, result)
     done.save(str(tmp_path / 'watch.actions'))
-    assert '/player died (recovery: 2)' in run()
+    assert '/player silent (recovery: 2)' in run()
     told = [line for line in run('1').splitlines() if 'recovery' in line]
     assert len(told) == 2
     assert '2026-09-21 14:13:20 UTC, stop /player (step 1 of 2)' in told[0]
@@ -177,4 +178,4 @@ def test_what_the_recovery_did_is_shown_with_the_incident(run: Callable[..., str
     (tmp_path / 'watch.actions').write_text('{}}')
     assert incidents.main(['--file', str(tmp_path / 'watch.incidents')]) == 0
     said = capsys.readouterr()
-    assert '/player died ' in said.out and 'watch.actions: not YAML' in said.err
+    assert '/player silent ' in said.out and 'watch.actions: not YAML' in said.err

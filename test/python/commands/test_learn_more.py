@@ -119,7 +119,7 @@ def test_what_is_not_normal_or_was_learned_says_nothing(model: str, learned: Tup
     reasons = {Path(each['recording']).name: each['reason'] for each in age['left_out']}
     assert reasons == {'0.bag': 'learned from', '1.bag': 'learned from', '2.bag': 'learned from',
                        '3.bag': 'learned from', 'dead.bag': 'not normal', 'short.bag': 'too short'}
-    assert [each['why'] for each in age['left_out'] if each['why']] == ['died /laser']
+    assert [each['why'] for each in age['left_out'] if each['why']] == ['silent /laser']
 
 
 def test_more_is_learned_and_taken_only_if_asked(model: str, learned: Tuple[str, List[str]],
@@ -134,7 +134,7 @@ def test_more_is_learned_and_taken_only_if_asked(model: str, learned: Tuple[str,
     accepted_file.keep(accepted, model)
     assert learn_more.main(['--model', model, str(folder), learned[1][3], dead]) == 0
     out = capfd.readouterr().out
-    assert 'what changed' in out and 'rate    /laser /scan' in out and 'died /battery' in out
+    assert 'what changed' in out and 'rate    /laser /scan' in out and 'silent /battery' in out
     assert Path(model).read_bytes() == before
     new = TrainedModel.load(f'{model}.new')
     assert new.calibration.method == 'held-out'

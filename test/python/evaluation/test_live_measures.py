@@ -35,7 +35,7 @@ def said(*levels: Tuple[float, int], settled_after_s: float = -2.0) -> List[Stat
         found.append(Status(ONSET + after_s, level, after_s <= settled_after_s, 'overdue',
                             ('/base', name) if level else (),
                             f'level {level} at {after_s:g}; events in /tmp/a.bag',
-                            name, 'died' if level else '', 7 if level else 0, events=16))
+                            name, 'silent' if level else '', 7 if level else 0, events=16))
     return found
 
 
@@ -46,7 +46,7 @@ def test_a_fault_that_is_found_and_clears() -> None:
     assert row.blamed_s == pytest.approx(0.4)
     assert (row.first, row.among_three, row.suspects) == (False, True, '/base /lidar')
     assert row.cleared_s == pytest.approx(1.9)
-    assert (row.end_level, row.end_kind, row.end_component) == (ERROR, 'died', '/lidar')
+    assert (row.end_level, row.end_kind, row.end_component) == (ERROR, 'silent', '/lidar')
     assert (row.incident_began_s, row.incident_ended_s) == (-60.0, 7.5)
     assert (row.void, row.evidence, row.events) == ('', 'overdue', 50 * 16)
     assert row.said == 'level 2 at 0.4', 'files of this machine are not told'

@@ -84,11 +84,11 @@ def test_a_fault() -> None:
 
 def test_what_is_said_when_the_fault_ends() -> None:
     suspected = SystemAlarm(at(72), at(74), True, ['/b'], '', SUSPICION, '/b', 'late')
-    stands = SystemAlarm(at(74), at(99), False, ['/b', '/a'], '', culprit='/a', kind='died',
+    stands = SystemAlarm(at(74), at(99), False, ['/b', '/a'], '', culprit='/a', kind='silent',
                          incident=(at(72), at(99), False))
     found = fault_row(SUBJECT, fault_at(70), judged([stands], suspicions=[suspected]))
     assert (found.first, found.right_at_end) == (False, True)
-    assert (found.level, found.culprit, found.kind) == ('ERROR', '/a', 'died')
+    assert (found.level, found.culprit, found.kind) == ('ERROR', '/a', 'silent')
     assert (found.opened_s, found.closed_s) == (pytest.approx(0.2, abs=1e-6), None)
     # By then it is over, and somebody else is only suspected.
     over = replace(stands, end=at(80), cleared=True, incident=None)
@@ -111,7 +111,7 @@ def test_an_incident_begins_with_its_first_suspicion() -> None:
     onset = START + 20_000_000_000
     record = FaultRecord('crash', ('/player',), robot(40.0, 4, silent=((20.0, 40.0),)), onset)
     found = fault_row(SUBJECT, record, system.judge(record.recording), 1)
-    assert (found.first, found.right_at_end, found.kind) == (True, True, 'died')
+    assert (found.first, found.right_at_end, found.kind) == (True, True, 'silent')
     assert found.opened_s is not None and found.latency_s is not None
     assert 0.0 < found.opened_s <= found.latency_s < 1.0 and found.closed_s is None
 

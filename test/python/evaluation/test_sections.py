@@ -79,7 +79,7 @@ def of_case(fault: str, system: str = 'evidence', **more: Any) -> Row:
 
 def test_the_recordings() -> None:
     rows = [of_case(NORMAL, hours=0.01, alarms=1, standing_hours=0.001),
-            of_case('outage', latency_s=0.9, level='ERROR', kind='died', culprit='/a'),
+            of_case('outage', latency_s=0.9, level='ERROR', kind='silent', culprit='/a'),
             of_case(NORMAL, 'paper', hours=0.01), of_case('outage', 'paper', stood_before=True)]
     section = recordings.section(rows)
     evidence = ('| wheeled, 1 | evidence | 5 | found | 0.90 s | ERROR, died, /a | 1 '

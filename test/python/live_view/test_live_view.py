@@ -77,7 +77,7 @@ def stands(alarm: int, component: str, kind: str, *suspects: Tuple[str, str]) ->
 
 def incident(component: str, alarms: int = 1, over: bool = False, **lists: List[str]) -> Any:
     return SimpleNamespace(**{**dict(
-        id=7, component=component, kind='died', alarms=alarms, over=over, unknown=False,
+        id=7, component=component, kind='silent', alarms=alarms, over=over, unknown=False,
         together=[], victims=[], others=[]), **lists})
 
 
@@ -254,8 +254,8 @@ def test_all_is_in_80_columns(said: Said) -> None:
                  'not watched: /rare (too few messages in training: 7 gaps)',
                  'new, not accepted: /rostopic on /cmd_vel, /joy',
                  'muted: /noisy until',
-                 'open  /player died, raised 7 times; and /slam, /navigation ...',
-                 'over  /old died', 'listening; 120 events/s, 0.02 cores'):
+                 'open  /player silent, raised 7 times; and /slam, /navigation ...',
+                 'over  /old silent', 'listening; 120 events/s, 0.02 cores'):
         assert text in page
     assert '/quiet' not in page and 'another' not in page
     rows = [re.sub(' +', ' ', text) for text in texts]
@@ -268,12 +268,12 @@ def test_all_is_in_80_columns(said: Said) -> None:
 
 def test_what_stands_is_what_the_verdict_says(said: Said) -> None:
     assert said.level == 2 and said.standing == 0 and said.deaths == []
-    said.on_status(stands(7, '/player', 'died', ('/player', 'died'), ('/base', 'late'),
+    said.on_status(stands(7, '/player', 'silent', ('/player', 'silent'), ('/base', 'late'),
                           ('/slam', 'never came')))
     assert said.standing == 7 and said.deaths == ['/player', '/slam']
     said.on_status(stands(8, '/player', 'slow', ('/player', 'slow')))
     assert said.standing == 8 and said.deaths == []
-    over = stands(8, '/player', 'died')
+    over = stands(8, '/player', 'silent')
     over.level = 0
     said.on_status(over)
     assert said.standing == 0 and said.deaths == [], 'it ended with this window'

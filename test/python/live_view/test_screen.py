@@ -78,7 +78,7 @@ def shown() -> Shown:
 
 
 def test_a_death_is_accepted_after_yes_only(shown: Shown) -> None:
-    shown.stands('slow', 'died')
+    shown.stands('slow', 'silent')
     assert shown.press('a') == 'accept it? /slam may then die unseen (y/n)'
     assert shown.press('n') == 'not done' and shown.called == []
     shown.press('y')

@@ -55,7 +55,7 @@ def test_what_is_normal_is_accepted_and_taken_back_as_the_page_says(reader: Read
     first, second = blocks('accept.md')
     ask, *accept = [ID.sub(alarm[1], call) for call in first.splitlines()]
     done, message = answer(reader, ask)
-    assert not done and f'"{{alarm: {alarm[1]}}}" for /camera on /image (died)' in message
+    assert not done and f'"{{alarm: {alarm[1]}}}" for /camera on /image (silent)' in message
     for call in accept:
         done, message = answer(reader, call)
         assert done and 'normal from now on' in message, call

@@ -11,13 +11,13 @@ def test_from_nothing_to_an_alarm_and_its_report(reader: Reader) -> None:
     by_command = {command: text for block, text in said.items() for command in block.splitlines()
                   if not command.startswith('#')}
     alarm = next(text for block, text in said.items() if 'induce' in block)
-    assert 'level: 2' in alarm and '/player on ' in alarm
+    assert 'level: 2' in alarm and '/player (/' in alarm
     scored = next(text for command, text in by_command.items() if '--report' in command)
     assert re.search(r'1\. /player ', scored)
     report = (reader.folder / 'alarm.html').read_text()
     assert '/player' in report
     results = next(text for command, text in by_command.items() if 'echo -b' in command)
-    assert 'abnormal communication' in results
+    assert 'stopped sending at' in results
     learned_more = said[blocks('tutorial.md')[-1]]
     for text in ('starts of the robot: 1', 'written: better.model', 'before  robot.model'):
         assert text in learned_more

@@ -12,7 +12,7 @@ from self_awareness.recovery.history import MOST, Action, History
 
 def action(incident: int = 7, **fields: Any) -> Action:
     values: Dict[str, Any] = {'begin': 1_600_000_000_000_000_001, 'dry_run': False, **fields}
-    return Action(incident, '/player', 'died', 1, 2, 'stop /player', **values)
+    return Action(incident, '/player', 'silent', 1, 2, 'stop /player', **values)
 
 
 def test_what_is_written_is_read(tmp_path: Path) -> None:

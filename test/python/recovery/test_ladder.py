@@ -9,9 +9,9 @@ from hypothesis import given, settings, strategies
 from self_awareness.recovery.ladder import HOUR_S, SHORTEST_HEALING_S, Fault, Ladder, Order
 from self_awareness.recovery.rules import Call, Rule, Rules, Stop
 
-PLAYER = Rule('/player', ('died',), (Call('/player/reset'), Stop(('/player',)),
-                                     Stop(('/player', '/slam'))))
-SLAM = Rule('/slam', ('died', 'slow'), (Stop(('/slam',)),))
+PLAYER = Rule('/player', ('silent',), (Call('/player/reset'), Stop(('/player',)),
+                                       Stop(('/player', '/slam'))))
+SLAM = Rule('/slam', ('silent', 'slow'), (Stop(('/slam',)),))
 DELAY, WAIT = 5.0, 20.0
 TICK = 0.5
 
@@ -20,7 +20,7 @@ def ladder(*rules: Rule, limit: int = 10, limit_of_all: int = 20, delay: float =
     return Ladder(Rules(rules or (PLAYER,), delay, WAIT, limit=limit, limit_of_all=limit_of_all))
 
 
-def fault(component: str = '/player', kind: str = 'died', incident: int = 1,
+def fault(component: str = '/player', kind: str = 'silent', incident: int = 1,
           stands: bool = True) -> Fault:
     return Fault(incident, component, kind, stands)
 
@@ -77,9 +77,9 @@ def test_who_comes_again_within_the_delay_is_left_alone() -> None:
     for tick in range(200):
         now = tick * TICK
         gap_begin = now - now % (DELAY - TICK)
-        dead = Fault(1, '/player', 'died', True, since=gap_begin)
+        dead = Fault(1, '/player', 'silent', True, since=gap_begin)
         assert tested.advance(now, [dead]) is None
-    assert climb(tested, 100.0, 101.0 + DELAY, [Fault(1, '/player', 'died', True, since=100.0)]
+    assert climb(tested, 100.0, 101.0 + DELAY, [Fault(1, '/player', 'silent', True, since=100.0)]
                  ) == [(100.0 + DELAY, 'call /player/reset')]
 
 
@@ -88,7 +88,7 @@ def test_it_is_left_alone_between_two_steps_too() -> None:
     assert climb(tested, 0.0, DELAY + 1.0) == [(DELAY, 'call /player/reset')]
     begin = DELAY + WAIT - 1.0
     assert climb(tested, begin, begin + DELAY + 1.0,
-                 [Fault(1, '/player', 'died', True, since=begin)]
+                 [Fault(1, '/player', 'silent', True, since=begin)]
                  ) == [(begin + DELAY, 'stop /player')]
 
 
@@ -190,7 +190,7 @@ def test_what_is_not_known_is_neither_mended_nor_healed() -> None:
 
 
 def test_who_is_silent_because_it_was_stopped_for_another_is_no_fault() -> None:
-    stop_both = Rule('/player', ('died',), (Stop(('/player', '/slam')),))
+    stop_both = Rule('/player', ('silent',), (Stop(('/player', '/slam')),))
     tested = ladder(stop_both, SLAM, delay=0.0)
     assert climb(tested, 0.0, TICK) == [(0.0, 'stop /player, /slam')]
     of_slam = [fault('/slam', incident=2)]
@@ -199,7 +199,7 @@ def test_who_is_silent_because_it_was_stopped_for_another_is_no_fault() -> None:
 
 
 def test_a_step_that_takes_long_leaves_others_their_time_from_its_end() -> None:
-    stop_both = Rule('/player', ('died',), (Stop(('/player', '/slam')),))
+    stop_both = Rule('/player', ('silent',), (Stop(('/player', '/slam')),))
     tested = ladder(stop_both, SLAM, delay=0.0)
     both = [fault(), fault('/slam', incident=2)]
     order = tested.advance(0.0, both)
@@ -229,7 +229,7 @@ _MOMENTS = strategies.lists(
             strategies.none(),
             strategies.lists(strategies.builds(
                 Fault, strategies.just(1), strategies.sampled_from(_COMPONENTS),
-                strategies.sampled_from(['died', 'slow']), strategies.booleans()), max_size=3)),
+                strategies.sampled_from(['silent', 'slow']), strategies.booleans()), max_size=3)),
         strategies.booleans(),  # whether a step that is done ends here
         strategies.sampled_from([0.0, 0.0, 0.0, 100.0])),  # hold so long [s]
     max_size=60)

@@ -16,8 +16,8 @@ from self_awareness.recovery.ladder import Fault, Order
 from self_awareness.recovery.node import Recovery
 from self_awareness.recovery.rules import Rule, Rules, Stop
 
-RULE = Rule('/player', ('died',), (Stop(('/player',)),))
-FAULT = Fault(7, '/player', 'died', True)
+RULE = Rule('/player', ('silent',), (Stop(('/player',)),))
+FAULT = Fault(7, '/player', 'silent', True)
 SECOND = 10 ** 9
 
 
@@ -43,7 +43,7 @@ def hold(recovery: Recovery, seconds: float) -> str:
 
 
 def action(**fields: Any) -> Action:
-    return Action(7, '/player', 'died', 1, 1, 'stop /player', time.time_ns(), False, **fields)
+    return Action(7, '/player', 'silent', 1, 1, 'stop /player', time.time_ns(), False, **fields)
 
 
 def test_where_the_actions_are_kept_is_known_when_the_monitor_is_there(

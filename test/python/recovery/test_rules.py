@@ -17,7 +17,7 @@ from self_awareness.recovery.rules import KINDS, Call, Rule, Rules, Stop
 ROOT = Path(__file__).resolve().parents[3]
 EXAMPLE = ROOT / 'config' / 'recovery.yaml'
 MONITOR, RECOVERY = '/self_awareness', '/self_awareness_recovery'
-GOOD: Dict[str, Any] = {'component': '/player', 'kinds': ['died'],
+GOOD: Dict[str, Any] = {'component': '/player', 'kinds': ['silent'],
                         'steps': [{'stop': ['/player']}]}
 
 
@@ -47,11 +47,11 @@ def test_the_example_has_the_defaults_and_shows_every_key() -> None:
 def test_all_is_read(tmp_path: Path) -> None:
     read = load(tmp_path, {
         'delay': 1, 'wait': 2, 'grace': 0.5, 'limit': 4, 'limit_of_all': 5, 'dry_run': True,
-        'rules': [{'component': '/a/b', 'kinds': ['died', 'slow', 'died'],
+        'rules': [{'component': '/a/b', 'kinds': ['silent', 'slow', 'silent'],
                    'steps': [{'call': '/a/reset'}, {'stop': ['/c', '/a/b']}]}, GOOD]})
     assert read == Rules(
-        (Rule('/a/b', ('died', 'slow'), (Call('/a/reset'), Stop(('/c', '/a/b')))),
-         Rule('/player', ('died',), (Stop(('/player',)),))), 1.0, 2.0, 0.5, 4, 5, True)
+        (Rule('/a/b', ('silent', 'slow'), (Call('/a/reset'), Stop(('/c', '/a/b')))),
+         Rule('/player', ('silent',), (Stop(('/player',)),))), 1.0, 2.0, 0.5, 4, 5, True)
     assert read.nodes == ('/c', '/a/b', '/player')
 
 
@@ -81,16 +81,16 @@ def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
     ({**rule(), 'limit': 201}, 'limit', 'from 1 to 200'),
     ({**rule(), 'limit_of_all': True}, 'limit_of_all', 'number'),
     ({**rule(), 'dry_run': 'yes please'}, 'dry_run', 'true or false'),
-    ({'rules': [{'kinds': ['died'], 'steps': GOOD['steps']}]}, 'rules[0].component', 'missing'),
+    ({'rules': [{'kinds': ['silent'], 'steps': GOOD['steps']}]}, 'rules[0].component', 'missing'),
     (rule(component='player'), 'rules[0].component', 'no full name'),
     (rule(component='/*'), 'rules[0].component', 'patterns are not allowed'),
     (rule(component='/(.*)'), 'rules[0].component', 'patterns are not allowed'),
     (rule(component=['/player']), 'rules[0].component', 'expected a text'),
     (rule(component='/' + 'a' * 1000), 'rules[0].component', 'no full name'),
-    (rule(kinds='died'), 'rules[0].kinds', 'expected a list'),
+    (rule(kinds='silent'), 'rules[0].kinds', 'expected a list'),
     (rule(kinds=[]), 'rules[0].kinds', 'at least one'),
     (rule(kinds=[1]), 'rules[0].kinds', 'expected texts'),
-    (rule(kinds=['dead']), 'rules[0].kinds', 'choose from died, slow'),
+    (rule(kinds=['dead']), 'rules[0].kinds', 'choose from silent, topic silent'),
     (rule(kinds=['stranger']), 'rules[0].kinds', 'choose from'),
     (rule(kinds=['all silent']), 'rules[0].kinds', 'blames no component'),
     (rule(kinds=['busy machine']), 'rules[0].kinds', 'blames no component'),
@@ -115,7 +115,7 @@ def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
     (step(stop=['/rosout']), 'rules[0].steps[0].stop', "ROS's own"),
     (step(stop=['/roscore']), 'rules[0].steps[0].stop', 'the master'),
     (step(stop=[f'/n{i}' for i in range(6)]), 'rules[0].steps[0].stop', 'never all of it'),
-    ({'rules': [GOOD, {**GOOD, 'kinds': ['slow', 'died']}]}, 'rules', 'two rules for /player'),
+    ({'rules': [GOOD, {**GOOD, 'kinds': ['slow', 'silent']}]}, 'rules', 'two rules for /player'),
     ({'rules': [{**GOOD, 'component': f'/n{i}'} for i in range(101)]}, 'rules', 'at most 100'),
 ])
 def test_an_error_names_the_file_the_key_and_the_way_out(tmp_path: Path, data: Any, key: str,
@@ -140,7 +140,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
 
 _VALUES = strategies.recursive(
     strategies.none() | strategies.booleans() | strategies.integers() | strategies.floats()
-    | strategies.sampled_from(['/player', '/*', 'died', '/rosout', ' ', '']),
+    | strategies.sampled_from(['/player', '/*', 'silent', '/rosout', ' ', '']),
     lambda inner: strategies.lists(inner, max_size=3) | strategies.dictionaries(
         strategies.sampled_from(['rules', 'component', 'kinds', 'steps', 'stop', 'call', 'delay']),
         inner, max_size=4), max_leaves=12)

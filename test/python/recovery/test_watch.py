@@ -17,19 +17,19 @@ Listeners = Dict[str, Set[str]]
 NOBODY_LISTENS: Listeners = {'/player': set(), '/camera': set(), '/slam': set()}
 
 
-def incident(component: str = '/player', kind: str = 'died', **fields: Any) -> Incident:
+def incident(component: str = '/player', kind: str = 'silent', **fields: Any) -> Incident:
     return Incident(**{'id': 7, 'last': RAISED, 'level': SelfAwareness.ERROR,
                        'component': component, 'kind': kind, **fields})
 
 
-def suspect(component: str, kind: str = 'died', since: int = 100, silence: float = math.nan
+def suspect(component: str, kind: str = 'silent', since: int = 100, silence: float = math.nan
             ) -> Suspect:
     return Suspect(component=component, kind=kind, since=rospy.Time(since), silence=silence)
 
 
 def status(*suspects: Any, **fields: Any) -> SelfAwareness:
     values = {'level': SelfAwareness.ERROR, 'abnormal': True, 'alarm': RAISED,
-              'component': '/player', 'kind': 'died', **fields}
+              'component': '/player', 'kind': 'silent', **fields}
     said = SelfAwareness(suspects=[suspect(each) if isinstance(each, str) else each
                                    for each in suspects], **values)
     said.header.stamp = rospy.Time(NOW)
@@ -44,7 +44,7 @@ def watch(incidents: Iterable[Incident] = (incident(),), said: Any = status('/pl
 
 
 def died(component: str, since: float = 0.0, incident: int = 7) -> Fault:
-    return Fault(incident, component, 'died', True, since)
+    return Fault(incident, component, 'silent', True, since)
 
 
 def faults(tested: Watch, now: float, listeners: Optional[Listeners] = None) -> List[str]:
@@ -64,7 +64,7 @@ def test_others_are_none(said: Any) -> None:
     assert watch(said=said).faults(0.0) == []
 
 
-@pytest.mark.parametrize('then, now', [('died', 'slow'), ('slow', 'died')])
+@pytest.mark.parametrize('then, now', [('silent', 'slow'), ('slow', 'silent')])
 def test_the_alarm_says_what_is_wrong_and_not_the_incident_that_it_has_opened_again(
         then: str, now: str) -> None:
     again = incident(kind=then)
@@ -72,7 +72,7 @@ def test_the_alarm_says_what_is_wrong_and_not_the_incident_that_it_has_opened_ag
     assert faults(watch([again], said), 0.0) == [f'/player {now}']
 
 
-@pytest.mark.parametrize('then, now', [('died', 'slow'), ('slow', 'died')])
+@pytest.mark.parametrize('then, now', [('silent', 'slow'), ('slow', 'silent')])
 def test_what_is_wrong_may_change_while_the_alarm_stands(then: str, now: str) -> None:
     said = status(suspect('/player', now), kind=then)
     assert faults(watch(said=said), 0.0) == [f'/player {now}']
@@ -158,43 +158,43 @@ def test_who_fails_while_an_alarm_stands_is_a_fault_besides() -> None:
 
 
 def test_it_is_none_if_it_is_not_known_who_hears_whom() -> None:
-    assert faults(beside(LATER), BESIDE_S) == ['/player died']
+    assert faults(beside(LATER), BESIDE_S) == ['/player silent']
     without_player: Listeners = {'/camera': set(), '/slam': set()}
-    assert faults(beside(LATER), BESIDE_S, without_player) == ['/player died']
+    assert faults(beside(LATER), BESIDE_S, without_player) == ['/player silent']
     assert faults(beside(LATER, known=incident(last=1)), BESIDE_S, NOBODY_LISTENS) == [
-        '/player died']
+        '/player silent']
 
 
 def test_who_was_named_when_the_alarm_was_raised_need_not_be_abnormal_by_itself() -> None:
     assert faults(beside(suspect('/camera', since=100)), BESIDE_S, NOBODY_LISTENS) == [
-        '/player died']
+        '/player silent']
 
 
 def test_who_is_not_abnormal_by_itself_is_named_anew_in_every_window() -> None:
     assert faults(beside(suspect('/camera', since=NOW)), BESIDE_S, NOBODY_LISTENS) == [
-        '/player died']
+        '/player silent']
 
 
 def test_who_is_named_now_and_then_is_no_fault() -> None:
     tested = beside(LATER, seconds=BESIDE_S - 0.1)
-    assert faults(tested, BESIDE_S - 0.1, NOBODY_LISTENS) == ['/player died']
+    assert faults(tested, BESIDE_S - 0.1, NOBODY_LISTENS) == ['/player silent']
     for tenth in range(1, 8):
         tested.on_status(BESIDE_S + tenth / 10.0, status('/player'))
     tested.on_status(BESIDE_S + 0.8, status('/player', LATER))
-    assert faults(tested, BESIDE_S + 0.8, NOBODY_LISTENS) == ['/player died']
+    assert faults(tested, BESIDE_S + 0.8, NOBODY_LISTENS) == ['/player silent']
 
 
 def test_victims_are_no_faults() -> None:
     tested = beside(LATER, known=incident(victims=['/camera']))
-    assert faults(tested, BESIDE_S, NOBODY_LISTENS) == ['/player died']
+    assert faults(tested, BESIDE_S, NOBODY_LISTENS) == ['/player silent']
     through_slam: Listeners = {'/player': {'/slam'}, '/slam': {'/camera', '/slam'},
                                '/camera': set()}
-    assert faults(beside(LATER), BESIDE_S, through_slam) == ['/player died']
+    assert faults(beside(LATER), BESIDE_S, through_slam) == ['/player silent']
     of_another: Listeners = {'/player': set(), '/slam': {'/camera'}, '/camera': set()}
     tested = beside(LATER, suspect('/slam', 'slow', since=150))
-    assert faults(tested, BESIDE_S, of_another) == ['/player died', '/slam slow']
+    assert faults(tested, BESIDE_S, of_another) == ['/player silent', '/slam slow']
     both_ways = {**of_another, '/camera': {'/slam'}}
-    assert faults(tested, BESIDE_S, both_ways) == ['/player died']
+    assert faults(tested, BESIDE_S, both_ways) == ['/player silent']
 
 
 def test_another_alarm_begins_anew() -> None:

@@ -23,13 +23,13 @@ from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 
 def suspect(component: str, short: str = 'fell silent', silence: Optional[Silence] = None,
-            kind: str = 'died', **reason: Any) -> NamedSuspect:
+            kind: str = 'silent', **reason: Any) -> NamedSuspect:
     of: Any = SimpleNamespace(reason=SimpleNamespace(kind=kind, after='', topics=[], **reason))
     return NamedSuspect(component, f'{component} /t x/Y', short, 'why', 0.0, True, silence, of)
 
 
 def interval(start: float, end: float, suspects: Sequence[NamedSuspect] = (), level: str = ALARM,
-             cleared: bool = True, kind: str = 'died', busy: Optional[str] = None,
+             cleared: bool = True, kind: str = 'silent', busy: Optional[str] = None,
              silence: Optional[Silence] = None, reason: str = '') -> Interval:
     of: Any = SimpleNamespace(culprit=suspects[0].component if suspects else '', kind=kind,
                               silent=None, reason=reason)
@@ -136,7 +136,7 @@ def test_a_computer_that_fell_silent_is_the_finding(evidence_model: str, tmp_pat
     assert alarm['reason'] == 'everything on host base fell silent: 2 nodes'
     assert alarm['silent']['hosts'] == ['base']
     assert alarm['silent']['components'] == ['/laser', '/slam']
-    assert {each['component'] for each in alarm['suspects']} == {'/laser', '/slam'}
+    assert not alarm['suspects'], 'none of them is to blame'
     told = re.escape('Everything on host base fell silent at 12.0 s: 2 nodes; they came back at '
                      '20.0 s.')
     assert re.fullmatch(told, recording['incidents'][0]['headline'])

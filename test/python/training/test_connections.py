@@ -83,7 +83,7 @@ def test_who_does_not_subscribe_is_named_after_a_minute(logs: Dict[str, str], mo
 
 def test_who_is_dead_is_one_finding(logs: Dict[str, str], model: str, tmp_path: Path) -> None:
     found = suspicions(model, logs['dead'], tmp_path)
-    assert {(kind, culprit) for kind, culprit, _ in found} == {('died', '/navigation')}
+    assert {(kind, culprit) for kind, culprit, _ in found} == {('silent', '/navigation')}
 
 
 @pytest.mark.parametrize('names', [

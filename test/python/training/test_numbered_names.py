@@ -119,7 +119,7 @@ def test_training_takes_it_as_one_and_says_so(bags, tmp_path: Path, capsys, jobs
         capsys.readouterr().out
     crash = write_bag(tmp_path / 'crash.bag', numbered_robot(9000.0, 51511, 20.0))
     assert [(alarm.kind, alarm.culprit) for alarm in load(str(tmp_path / 'm')).judge(crash)
-            if alarm.level == 'ERROR'] == [('died', PLAIN)]
+            if alarm.level == 'ERROR'] == [('silent', PLAIN)]
 
 
 def test_event_logs_say_the_same(bags, tmp_path: Path) -> None:

@@ -20,14 +20,14 @@ class StandingAlarmTest : public OneMessageTest<self_awareness::StandingAlarm> {
     SelfAwareness& alarm = content_.alarm;
     alarm.level = SelfAwareness::ERROR;
     alarm.alarm = 1600000000000000000;
-    alarm.kind = "died";
+    alarm.kind = "silent";
     alarm.component = "/driver";
     alarm.evidence = "overdue";
     self_awareness::Suspect suspect;
     suspect.source = suspect.component = "/driver";
     suspect.scope = "/scan";
     suspect.type = "T";
-    suspect.kind = "died";
+    suspect.kind = "silent";
     suspect.since.sec = 7;
     alarm.suspects = {suspect};
   }
@@ -86,7 +86,7 @@ TEST_F(StandingAlarmTest, SuspectsAreThoseThatTheModelKnows) {
   EXPECT_EQ(suspects[0].id, 1U);
   EXPECT_EQ(suspects[0].component, "/driver");
   EXPECT_EQ(suspects[0].since, 7000000000);
-  EXPECT_EQ(suspects[0].reason.kind, core::Kind::kDied);
+  EXPECT_EQ(suspects[0].reason.kind, core::Kind::kSilent);
 }
 
 }  // namespace

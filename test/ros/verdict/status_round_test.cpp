@@ -63,7 +63,7 @@ void fill(CommunicationState& state) {
 void raise(CommunicationState& state, int second) {
   state.last.level = DiagnosticStatus::ERROR;
   state.last.alarm = 1764000000123456789;
-  state.last.kind = "died";
+  state.last.kind = "silent";
   state.last.component = "/robot/some_node_0";
   state.last.evidence = "overdue, rate, deadlines";
   state.last.suspects.clear();

@@ -44,7 +44,7 @@ TEST_F(VerdictMessageTest, TellsTheSilence) {
   EXPECT_EQ(message.scope, "/scan");
   EXPECT_EQ(message.type, "sensor_msgs/LaserScan");
   EXPECT_EQ(message.component, "/player");
-  EXPECT_EQ(message.kind, self_awareness::SelfAwareness::DIED);
+  EXPECT_EQ(message.kind, self_awareness::SelfAwareness::SILENT);
   EXPECT_EQ(message.reason, reason.words);
   EXPECT_EQ(message.unit, "s");
   EXPECT_EQ(message.value, 2.5);
@@ -56,7 +56,7 @@ TEST_F(VerdictMessageTest, TellsTheSilence) {
 
 TEST_F(VerdictMessageTest, ADeathThatIsCountedInRequestsHasASilence) {
   core::Reason reason;
-  reason.kind = Kind::kDied;
+  reason.kind = Kind::kSilent;
   reason.unit = core::unit::kRequests;
   reason.value = 3;
   EXPECT_TRUE(std::isnan(message(0, reason).silence)) << "it was not heard so far";
@@ -90,22 +90,30 @@ TEST_F(VerdictMessageTest, SaysWhichValueOfATypeFieldItIsAbout) {
             "/rosout [level=8]: never seen in training, 3 in this window");
 }
 
-TEST_F(VerdictMessageTest, ABusyMachineIsNamedBeforeTheSuspects) {
+TEST_F(VerdictMessageTest, TheSentenceOfTheAlarmComesFirst) {
   core::Verdict verdict;
   verdict.threshold = -1;
-  verdict.alarm = true;
-  EXPECT_EQ(
-      wording(verdict, "busy, pairs", {stranger(1)}, {},
-              core::describe(core::Busy{12, 26}, "load 7.9 on 2 cores")),
-      "abnormal communication (busy, pairs), the machine may be busy (load 7.9 on 2 cores): "
-      "12 of 26 components are late, /player on /rosout [level=8]: never seen in training, 3 "
-      "in this window");
+  core::Alarm alarm;
+  alarm.kind = Kind::kBusyMachine;
+  alarm.begin = 1'600'000'000'000'000'000;
+  const std::string busy = describe(core::Busy{12, 26}, "load 7.9 on 2 cores");
+  EXPECT_EQ(wording(verdict, alarm, "busy, pairs", {stranger(1)}, busy),
+            "the machine may be busy (load 7.9 on 2 cores): 12 of 26 components are late, since "
+            "12:26:40 UTC (busy, pairs); now also /player on /rosout [level=8]: never seen in "
+            "training, 3 in this window");
+  alarm.kind = Kind::kSlow;
+  alarm.culprit = "/imu";
+  EXPECT_EQ(wording(verdict, alarm, "rate", {}, busy),
+            "/imu sends too seldom since 12:26:40 UTC; " + busy + " (rate)");
+  EXPECT_EQ(wording(verdict, std::nullopt, "", {}), "normal communication");
 }
 
 // Programs compare with the strings of the message.
 TEST(Kinds, AreThoseOfTheMessage) {
   using Message = self_awareness::SelfAwareness;
-  EXPECT_EQ(core::toString(Kind::kDied), Message::DIED);
+  EXPECT_EQ(core::toString(Kind::kSilent), Message::SILENT);
+  EXPECT_EQ(core::toString(Kind::kTopicSilent), Message::TOPIC_SILENT);
+  EXPECT_EQ(core::toString(Kind::kUnanswered), Message::UNANSWERED);
   EXPECT_EQ(core::toString(Kind::kSlow), Message::SLOW);
   EXPECT_EQ(core::toString(Kind::kFast), Message::FAST);
   EXPECT_EQ(core::toString(Kind::kLate), Message::LATE);

@@ -26,10 +26,10 @@ struct Alarm {
   std::uint64_t id = 0;
   Level level = Level::kSuspicion;  ///< the same from its begin to its end
   std::int64_t begin = 0;           ///< end of the window that raised it [ns]
-  std::int64_t end = 0;     ///< end of the window that ended it, or of the last one so far [ns]
-  bool over = false;        ///< false: it stands
-  Kind kind = Kind::kDied;  ///< what is wrong, of the culprit or of all
-  std::string culprit;      ///< component; empty: there is none, or nobody stands out
+  std::int64_t end = 0;       ///< end of the window that ended it, or of the last one so far [ns]
+  bool over = false;          ///< false: it stands
+  Kind kind = Kind::kSilent;  ///< what is wrong, of the culprit or of all
+  std::string culprit;        ///< component; empty: there is none, or nobody stands out
   /// Why the culprit is one, in words; without a culprit: who is silent, or empty.
   std::string reason;
   /// What raised it, in words; empty: a suspicion that an alarm left, so far. That is about the
@@ -43,6 +43,9 @@ struct Alarm {
   /// of strangers.
   std::vector<Suspect> suspects;
   std::vector<Suspect> later;  ///< of further components, each with its time (since)
+
+  /// The suspect that is the culprit; null: there is none.
+  const Suspect* suspectToBlame() const;
 };
 
 /// Makes alarms and suspicions of the verdicts on one window after the other, in the same way live

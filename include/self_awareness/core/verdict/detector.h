@@ -123,7 +123,7 @@ class Detector : private WindowObserver {
   };
   /// A suspect of an alarm of before the start.
   struct Awaited {
-    Kind kind = Kind::kDied;            // what was wrong with it
+    Kind kind = Kind::kSilent;          // what was wrong with it
     std::optional<std::int64_t> heard;  // for the first time [ns]
   };
 

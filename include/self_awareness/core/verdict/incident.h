@@ -30,9 +30,9 @@ struct Occurrence {
   std::int64_t begin = 0;  ///< [ns]
   std::int64_t end = 0;    ///< [ns]; so far, if it is not over
   bool over = false;
-  Kind kind = Kind::kDied;
+  Kind kind = Kind::kSilent;
   std::string culprit;  ///< component; empty: there is none
-  std::string reason;   ///< why it is one, in words
+  std::string reason;   ///< what happened, in a sentence
   std::vector<Named> named;
   std::vector<std::string> hosts;  ///< computers that fell silent as a whole
   std::vector<std::string> mode;   ///< components that stopped together while others go on
@@ -52,9 +52,9 @@ struct Incident {
   std::uint64_t main = 0;  ///< id of the longest one that blames the cause, alarms first
   std::uint64_t last = 0;  ///< id of the last one
   Alarm::Level level = Alarm::Level::kSuspicion;  ///< a suspicion: there were near misses only
-  Kind kind = Kind::kDied;                        ///< what is wrong, as the main one says
+  Kind kind = Kind::kSilent;                      ///< what is wrong, as the main one says
   std::string cause;                              ///< component; empty: nobody is to blame
-  std::string reason;                             ///< why, in words, as the main one says
+  std::string reason;                             ///< the sentence of the main one
   /// Failed at once with it, and do not need its messages; of a new mode: all that stopped, if
   /// they are known.
   std::vector<std::string> together;

@@ -29,7 +29,9 @@ constexpr std::size_t kMostSuspects = 5;
 
 /// What is wrong with a component, or with all of them (docs/alarm.md).
 enum class Kind {
-  kDied,          ///< has not come, although it should have by now, of itself or as an answer
+  kSilent,        ///< has not come, although it should have: nothing of its component is heard
+  kTopicSilent,   ///< the same, of one topic: other things of its component are heard
+  kUnanswered,    ///< has not come as an answer: other things of its component are heard
   kSlow,          ///< comes less often than it should
   kFast,          ///< comes more often than it should
   kLate,          ///< comes later than it should: after what it answers to, or after its own last
@@ -48,9 +50,9 @@ enum class Kind {
   kTwoSenders,    ///< its topics come from two senders of its name
 };
 
-/// "died", "slow", "fast", "late", "early", "out of order", "never came", "stranger", "not
-/// subscribed", "stale", "lossy", "other size", "stuck", "busy machine", "all silent", "new mode"
-/// or "two senders".
+/// "silent", "topic silent", "unanswered", "slow", "fast", "late", "early", "out of order", "never
+/// came", "stranger", "not subscribed", "stale", "lossy", "other size", "stuck", "busy machine",
+/// "all silent", "new mode" or "two senders".
 std::string toString(Kind kind);
 /// The kind of this name; none: there is no such kind.
 std::optional<Kind> kindOf(const std::string& name);
@@ -58,6 +60,8 @@ std::optional<Kind> kindOf(const std::string& name);
 bool isMissing(Kind kind);
 /// Whether it is that something has not come.
 bool isAbsence(Kind kind);
+/// The same, of something that was heard before.
+bool isSilence(Kind kind);
 
 /// Units of a reason's values; a channel may have others.
 namespace unit {
@@ -73,11 +77,11 @@ struct Reason {
   /// What is not known.
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-  Kind kind = Kind::kDied;  ///< what is wrong
-  std::string after;        ///< the event type that it should come after; empty: its own last
-  std::string unit;         ///< of the four values below
-  double value = kNone;     ///< what was seen: a silence, a median delay, a rate, a number
-  double usual = kNone;     ///< what is to be expected of it; NaN: not known
+  Kind kind = Kind::kSilent;  ///< what is wrong
+  std::string after;          ///< the event type that it should come after; empty: its own last
+  std::string unit;           ///< of the four values below
+  double value = kNone;       ///< what was seen: a silence, a median delay, a rate, a number
+  double usual = kNone;       ///< what is to be expected of it; NaN: not known
   double usual_shortest = kNone;  ///< the lower end of what is usual; NaN: not known
   double usual_longest = kNone;   ///< its upper end; NaN: not known
   double lasted = kNone;          ///< the value is of the last so many seconds; NaN: of one moment
@@ -117,6 +121,7 @@ Reason comesFromTwo(const std::set<std::pair<std::string, std::string>>& topics,
 struct Suspect {
   EventId id = 0;         ///< of the event type
   std::string component;  ///< whose event type it is; empty: not known, as of unknown events
+  std::string topic;      ///< of the event type, once an alarm names it
   /// It alone would be abnormal: its evidence is beyond its limit, or it was never seen in
   /// training. With the paper's detector, which knows no limit of a single event type, the latter
   /// only.

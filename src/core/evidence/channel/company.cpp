@@ -208,7 +208,7 @@ void CompanyState::explain(std::size_t track, const Heard& heard, const RecentEv
   const auto number = static_cast<std::size_t>(place - expected_.tracks().begin());
   const EventType& from = expected_.model().vocabulary().at(fromOf(number));
   Reason& reason = suspect.reason;
-  reason.kind = Kind::kDied;
+  reason.kind = Kind::kSilent;
   reason.after = toString(from);
   reason.value = goneOn(number, heard);
   char text[60];

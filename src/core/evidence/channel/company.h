@@ -12,7 +12,7 @@ class Company : public Channel {
  public:
   std::string name() const override { return "company"; }
   Finding finding() const override { return Finding::kAbsent; }
-  Kind kind() const override { return Kind::kDied; }
+  Kind kind() const override { return Kind::kSilent; }
   bool hasShareOfItsOwn() const override { return true; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,

@@ -138,7 +138,7 @@ void OwedState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
 void OwedState::explain(std::size_t track, const Heard& heard, const RecentEvents& /*events*/,
                         Suspect& suspect) const {
   Reason& reason = suspect.reason;
-  reason.kind = Kind::kDied;
+  reason.kind = Kind::kSilent;
   reason.after = toString(model_.vocabulary().at(model_.tracks()[track].from));
   const Answer& answer = answerOf(track);
   char text[60];

@@ -11,7 +11,7 @@ class Owed : public Channel {
  public:
   std::string name() const override { return "deadlines"; }
   Finding finding() const override { return Finding::kUnanswered; }
-  Kind kind() const override { return Kind::kDied; }
+  Kind kind() const override { return Kind::kSilent; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,
                                             std::vector<std::size_t> tracks) const override;

@@ -113,7 +113,7 @@ std::optional<std::int64_t> Scorer::onset(std::size_t track) const {
 
 void Scorer::explain(std::size_t track, const RecentEvents& events, Suspect& suspect) const {
   stateOf(track).explain(track, heard_, events, suspect);
-  if (suspect.reason.kind == Kind::kDied && heard_.hasSeen(suspect.id)) {
+  if (isSilence(suspect.reason.kind) && heard_.hasSeen(suspect.id)) {
     suspect.reason.silence = toSeconds(heard_.silence(suspect.id));
   }
 }

@@ -32,7 +32,7 @@ class SilenceState : public ChannelState {
                Suspect& suspect) const override {
     const EventId id = suspect.id;
     Reason& reason = suspect.reason;
-    reason.kind = Kind::kDied;
+    reason.kind = Kind::kSilent;
     reason.unit = unit::kSeconds;
     reason.value = toSeconds(heard.silence(id));
     reason.lasted = reason.value;

@@ -13,7 +13,7 @@ class Silence : public Channel {
  public:
   std::string name() const override { return "overdue"; }
   Finding finding() const override { return Finding::kSilent; }
-  Kind kind() const override { return Kind::kDied; }
+  Kind kind() const override { return Kind::kSilent; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,
                                             std::vector<std::size_t> tracks) const override;

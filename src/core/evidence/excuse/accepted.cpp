@@ -19,7 +19,7 @@ void Accepted::accept(const Acceptances& accepted) {
   for (EventId id = 0; id < model_->size(); ++id) {
     is_optional_[id] =
         accepted.mayBeAbsent(model_->component(id), model_->vocabulary().at(id).scope);
-    may_be_silent_[id] = is_optional_[id] || isAccepted(id, Kind::kDied);
+    may_be_silent_[id] = is_optional_[id] || isAccepted(id, Kind::kSilent);
   }
   tracks_.clear();
   optional_.clear();

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -75,6 +74,10 @@ std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
     if (suspects.size() < kMostSuspects || each.abnormal) {
       Suspect suspect = suspectOf(*each.main, window);
       suspect.abnormal = each.abnormal;
+      if (each.alive && suspect.reason.kind == Kind::kSilent) {
+        suspect.reason.kind =
+            suspect.reason.after.empty() ? Kind::kTopicSilent : Kind::kUnanswered;
+      }
       if (each.abnormal || !isUsual(suspect)) {
         suspects.push_back(std::move(suspect));
       }
@@ -148,6 +151,7 @@ void Explanation::accuse(const Excess& excess, const Window& window,
   if (wrong == Wrong::kAbsent) {
     const double usual = finding == Finding::kUnanswered ? 0 : model_->meanGap(track.to);
     later.due = std::min(later.due, excess.onset + static_cast<std::int64_t>(usual));
+    later.latest = std::max(later.latest, excess.onset + model_->longestGap(track.to));
     later.sure = later.sure || excess.share > 1;
   }
 }
@@ -157,16 +161,22 @@ std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accuse
   accused.erase(std::remove_if(accused.begin(), accused.end(),
                                [](const Accused& each) { return each.main == nullptr; }),
                 accused.end());
-  // Who is absent, but not beyond its limit, is the root of who is, or hardly to blame.
-  const std::vector<Accused> all = accused;
-  for (Accused& each : accused) {
-    if (each.wrong == Wrong::kAbsent && !each.sure &&
-        std::none_of(all.begin(), all.end(), [&](const Accused& victim) {
-          return victim.abnormal && isRoot(each, victim, window.leads);
-        })) {
-      each.wrong = Wrong::kOther;
+  // Who is absent, but not beyond its limit, is the root of who is to blame, or hardly is.
+  auto left = std::partition(accused.begin(), accused.end(), [](const Accused& each) {
+    return each.sure || each.wrong != Wrong::kAbsent;
+  });
+  for (auto found = left; found != accused.end();) {
+    found = std::find_if(left, accused.end(), [&](const Accused& each) {
+      return std::any_of(accused.begin(), left, [&](const Accused& victim) {
+        return (victim.abnormal || victim.wrong == Wrong::kAbsent) &&
+               isRoot(each, victim, window.leads);
+      });
+    });
+    if (found != accused.end()) {
+      std::iter_swap(left++, found);
     }
   }
+  std::for_each(left, accused.end(), [](Accused& each) { each.wrong = Wrong::kOther; });
   std::stable_sort(accused.begin(), accused.end(), [](const Accused& a, const Accused& b) {
     const auto of = [](const Accused& each) {
       return each.wrong == Wrong::kAbsent
@@ -200,11 +210,9 @@ std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accuse
 
 std::vector<Explanation::Accused> Explanation::rootFirst(const std::vector<Accused>& accused,
                                                          const Window& window) const {
-  std::vector<std::size_t> places(accused.size());
-  std::iota(places.begin(), places.end(), 0);
   std::vector<Accused> ordered;
   for (const std::size_t next :
-       evidence::rootFirst(places, [&](std::size_t root, std::size_t victim) {
+       evidence::rootFirst(accused.size(), [&](std::size_t root, std::size_t victim) {
          return isRoot(accused[root], accused[victim], window.leads);
        })) {
     ordered.push_back(accused[next]);
@@ -217,7 +225,7 @@ bool Explanation::isRoot(const Accused& root, const Accused& victim, const Leads
   const std::size_t to = victim.component;
   // Who fell silent only when the other one should have come is not why it did not.
   const bool too_late = root.wrong == Wrong::kAbsent && victim.wrong == Wrong::kAbsent &&
-                        root.main->onset > victim.due;
+                        root.main->onset > (root.sure ? victim.latest : victim.due);
   return !too_late && (upstream_->isUpstream(from, to) ||
                        (leads.count({from, to}) > 0 && !upstream_->isUpstream(to, from)));
 }
@@ -232,7 +240,7 @@ bool Explanation::owesNothing(EventId follower, EventId leader, const Window& wi
 
 bool Explanation::isUsual(const Suspect& suspect) const {
   const Reason& reason = suspect.reason;
-  if (reason.kind == Kind::kDied) {
+  if (isSilence(reason.kind)) {
     return reason.after.empty() && reason.value <= toSeconds(model_->longestGap(suspect.id));
   }
   return reason.usual_shortest <= reason.value && reason.value <= reason.usual_longest;

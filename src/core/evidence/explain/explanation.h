@@ -55,9 +55,10 @@ class Explanation {
     const Excess* main = nullptr;  // what it is named for
     double sum = 0;                // of the shares that involve it
     bool abnormal = false;         // one of them is beyond its limit
-    // Of who is absent: when it should have come [ns]; whether that is nearly beyond its limit;
-    // and whether something else of it was heard since.
+    // Of who is absent: when it should have come, and when at the latest [ns]; whether it is
+    // beyond its limit; and whether something else of it was heard since.
     std::int64_t due = std::numeric_limits<std::int64_t>::max();
+    std::int64_t latest = 0;
     bool sure = false;
     bool alive = false;
   };

@@ -135,16 +135,12 @@ std::vector<NeverHeard::Expected> NeverHeard::missing() const {
 }
 
 std::vector<NeverHeard::Expected> NeverHeard::rootFirst(std::vector<Expected> missing) const {
-  std::vector<std::size_t> components;
-  components.reserve(missing.size());
-  for (const Expected& expected : missing) {
-    components.push_back(component_of_[expected.id]);
-  }
   std::vector<Expected> ordered;
-  const auto is_root = [&](std::size_t component, std::size_t other) {
-    return upstream_->isUpstream(component, other);
+  const auto is_root = [&](std::size_t root, std::size_t victim) {
+    return upstream_->isUpstream(component_of_[missing[root].id],
+                                 component_of_[missing[victim].id]);
   };
-  for (const std::size_t next : evidence::rootFirst(components, is_root)) {
+  for (const std::size_t next : evidence::rootFirst(missing.size(), is_root)) {
     ordered.push_back(missing[next]);
   }
   return ordered;

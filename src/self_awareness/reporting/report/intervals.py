@@ -22,14 +22,7 @@ MOST_LISTED = 400
 _CLEARLY_LONGER = 3
 """A pause is a silence if it is so many times as long as the longest one in training."""
 
-_SHORT = {'slow': 'sends too seldom', 'fast': 'sends too often',
-          'late': 'paused for too long', 'out of order': 'sends at an irregular pace',
-          'never came': 'was not heard', 'stranger': 'is new',
-          'not subscribed': 'does not subscribe', 'stale': 'sends what is too old',
-          'lossy': 'loses messages', 'stuck': 'sends the same again and again',
-          'other size': 'sends messages of another size'}
-_SHORT_OF_ANSWERS = {'died': 'does not answer', 'late': 'answers late', 'early': 'answers early',
-                     'out of order': 'comes at unusual delays'}
+_SILENCES = ('silent', 'topic silent', 'unanswered')
 
 
 @dataclass(frozen=True)
@@ -156,19 +149,10 @@ def _named(judged: Judged, suspect: Suspect, alarm: Alarm) -> NamedSuspect:
     silence = _silence_of(judged, alarm, suspect)
     return NamedSuspect(
         suspect.component, str(judged.recording.event_types[suspect.id]),
-        _short(suspect, silence), suspect.reason.words, judged.seconds(suspect.since),
+        suspect.reason.shortly(silence is not None,
+                               silence is not None and silence.back is not None),
+        suspect.reason.words, judged.seconds(suspect.since),
         suspect.abnormal, silence, suspect)
-
-
-def _short(suspect: Suspect, silence: Optional[Silence]) -> str:
-    reason = suspect.reason
-    if silence is not None and not reason.after:
-        return 'stopped sending' if silence.back is None else 'fell silent'
-    if reason.unit == 'score':
-        return 'came at unusual times'
-    if reason.after or (reason.of > 0 and reason.times == 0):
-        return _SHORT_OF_ANSWERS.get(reason.kind, reason.kind)
-    return _SHORT.get(reason.kind, reason.kind)
 
 
 def _began(suspect: Suspect, start: float) -> Optional[float]:
@@ -183,12 +167,13 @@ def _silence_of(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Sile
     come without its question.
     """
     reason = suspect.reason
-    if reason.kind in ('never came', 'stranger') or (reason.after and reason.kind != 'died'):
+    is_silence = reason.kind in _SILENCES
+    if reason.kind in ('never came', 'stranger') or (reason.after and not is_silence):
         return None
     looks_back = 0.0 if math.isnan(reason.lasted) else reason.lasted
     silence = _longest(judged, judged.edges_of(suspect.id),
                        suspect.since - int(looks_back * SECOND_NS), alarm.end)
-    if reason.kind == 'died' and not reason.after:
+    if is_silence and not reason.after:
         return silence
     usual = judged.by.trained.longest_gap(suspect.id) / SECOND_NS
     end = judged.seconds(judged.recording.end) if silence.back is None else silence.back

@@ -87,7 +87,7 @@ TEST_F(CompanyTest, SilenceCountsWhileTheOtherGoesOn) {
     scorer_->add({k * kSlow, kB});
   }
   EXPECT_EQ(evidenceAt(2 * kSecond), 10);
-  EXPECT_EQ(reason().kind, Kind::kDied);
+  EXPECT_EQ(reason().kind, Kind::kSilent);
   EXPECT_EQ(reason().after, "/b /y T");
   EXPECT_EQ(reason().unit, unit::kRequests);
   EXPECT_EQ(reason().value, 10);

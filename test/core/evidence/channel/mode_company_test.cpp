@@ -120,7 +120,7 @@ TEST_F(ModeCompanyTest, EvidenceIsTheTimeThatTheModeHasLasted) {
   scorer_->add({kSecond, kPlan});
   EXPECT_EQ(evidenceAt(kSecond), 0);
   EXPECT_EQ(evidenceAt(6 * kSecond), 5);
-  EXPECT_EQ(reason().kind, Kind::kDied);
+  EXPECT_EQ(reason().kind, Kind::kSilent);
   EXPECT_EQ(reason().after, "/logic /state S[mode: DRIVING]");
   EXPECT_EQ(reason().unit, unit::kSeconds);
   EXPECT_EQ(reason().value, 5);

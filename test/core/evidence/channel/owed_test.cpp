@@ -37,7 +37,7 @@ TEST_F(OwedTest, RareRequestsAreCountedInSecondsSinceTheFirst) {
   EXPECT_DOUBLE_EQ(evidenceAt(31 * kSecond), 1);
   scorer_->add({35 * kSecond, kA});
   EXPECT_DOUBLE_EQ(evidenceAt(36 * kSecond), 6) << "since the first one without an answer";
-  EXPECT_EQ(reason().kind, Kind::kDied);
+  EXPECT_EQ(reason().kind, Kind::kSilent);
   EXPECT_DOUBLE_EQ(reason().value, 6);
   EXPECT_DOUBLE_EQ(reason().silence, 16) << "since the last B";
   EXPECT_EQ(reason().words, "has not come for 6.00 s after /a /x T");

@@ -49,7 +49,7 @@ TEST_F(SilenceTest, ASuspectIsToldOfByWhatTrainingMeasured) {
   add({now_, kA});
   now_ += 5 * kSecond;
   const Suspect silent = suspect(overdue_);
-  EXPECT_EQ(silent.reason.kind, Kind::kDied);
+  EXPECT_EQ(silent.reason.kind, Kind::kSilent);
   EXPECT_EQ(silent.reason.unit, unit::kSeconds);
   EXPECT_DOUBLE_EQ(silent.reason.value, 5);
   EXPECT_DOUBLE_EQ(silent.reason.lasted, 5);

@@ -84,7 +84,7 @@ TEST_F(AcceptedTest, AKindIsAcceptedWithWhatComesWithItAndNoMore) {
     EXPECT_EQ(leftOut(kind), Names{}) << toString(kind);
     EXPECT_FALSE(accepted_.mayBeSilent()[kB]) << toString(kind);
   }
-  for (const std::optional<Kind> kind : {std::optional<Kind>(), {Kind::kDied}}) {
+  for (const std::optional<Kind> kind : {std::optional<Kind>(), {Kind::kSilent}}) {
     EXPECT_EQ(leftOut(kind), all);
     EXPECT_TRUE(accepted_.mayBeSilent()[kB]);
   }
@@ -108,25 +108,25 @@ TEST_F(AcceptedTest, OnlySuspectsOfThatKindAreDropped) {
     suspect.component = "/b";
   }
   suspects[0].reason.kind = Kind::kStale;
-  suspects[1].reason.kind = Kind::kDied;
+  suspects[1].reason.kind = Kind::kSilent;
   suspects[2].reason.kind = Kind::kUnsubscribed;
   accepted_.leaveOut(suspects);
   ASSERT_EQ(suspects.size(), 2U);
-  EXPECT_EQ(suspects[0].reason.kind, Kind::kDied);
+  EXPECT_EQ(suspects[0].reason.kind, Kind::kSilent);
 }
 
 TEST_F(AcceptedTest, WhoIsOptionalMayBeMissing) {
-  EXPECT_FALSE(accepted_.isExcused(kB, Kind::kDied));
+  EXPECT_FALSE(accepted_.isExcused(kB, Kind::kSilent));
   Acceptances accepted;
   Acceptance absence;
   absence.component = "/b";
   absence.kind = Kind::kNeverCame;
   accepted.add(absence);
   accepted_.accept(accepted);
-  EXPECT_TRUE(accepted_.isExcused(kB, Kind::kDied));
+  EXPECT_TRUE(accepted_.isExcused(kB, Kind::kSilent));
   EXPECT_TRUE(accepted_.isExcused(kB, Kind::kNeverCame));
   EXPECT_FALSE(accepted_.isExcused(kB, Kind::kSlow));
-  EXPECT_FALSE(accepted_.isExcused(kA, Kind::kDied));
+  EXPECT_FALSE(accepted_.isExcused(kA, Kind::kSilent));
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ TEST_F(ExplanationTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
   const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}, {overdue(kC), 1.2}}, end);
   EXPECT_EQ(idsOf(named), (std::vector<EventId>{kC, kA}));
   for (const Suspect& suspect : named) {
-    EXPECT_EQ(suspect.reason.kind, Kind::kDied);
+    EXPECT_EQ(suspect.reason.kind, Kind::kSilent);
     EXPECT_NEAR(suspect.reason.value, 5, 0.5);
     EXPECT_LT(suspect.reason.usual_shortest, suspect.reason.usual_longest);
   }
@@ -105,8 +105,8 @@ TEST_F(ExplanationTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
   const Track fewer = trackOf(kFewer, kA, kA);
   // At half its rate its age is rare, too, but no more than that.
   EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kSlow);
-  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 0.8}}, end).at(0).reason.kind, Kind::kDied);
-  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kDied);
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 0.8}}, end).at(0).reason.kind, Kind::kSilent);
+  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kSilent);
 }
 
 TEST_F(ExplanationTest, LongerGapsAreSaidAsAnotherRateNotAsASilence) {
@@ -119,7 +119,7 @@ TEST_F(ExplanationTest, LongerGapsAreSaidAsAnotherRateNotAsASilence) {
   const Suspect slow = suspects({{overdue(kA), 0.9}, {gaps, 1.2}}, end).at(0);
   EXPECT_EQ(slow.reason.kind, Kind::kSlow);
   EXPECT_EQ(slow.reason.words, "every 1 s instead of 0.14 s, 6 times in the last 6.0 s");
-  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {gaps, 1.2}}, end).at(0).reason.kind, Kind::kDied);
+  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {gaps, 1.2}}, end).at(0).reason.kind, Kind::kSilent);
 }
 
 TEST_F(ExplanationTest, WhoDoesWhatIsUsualIsNoSuspect) {
@@ -234,7 +234,7 @@ TEST_F(ExplanationTest, WhoOwesAnAnswerIsNamedAsASilentOne) {
   const std::vector<Suspect> named = suspects(
       {{trackOf(kMore, kC, kC), 1.9}, {trackOf(kDeadlines, kB, kA), 1.1}}, last_ + 2 * kSecond);
   EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
-  EXPECT_EQ(named.front().reason.kind, Kind::kDied);
+  EXPECT_EQ(named.front().reason.kind, Kind::kSilent);
   EXPECT_EQ(named.front().reason.words, "has not come for 2.00 s after /a /x T");
 }
 

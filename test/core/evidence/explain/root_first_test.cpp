@@ -17,12 +17,13 @@ constexpr std::size_t kD = 3;
 using Components = std::vector<std::size_t>;
 using Pairs = std::set<std::pair<std::size_t, std::size_t>>;
 
-Components ordered(const Components& components, const Pairs& upstream) {
+Components ordered(const Components& components, const Pairs& roots) {
   Components roots_first;
-  for (const std::size_t index : rootFirst(components, [&](std::size_t from, std::size_t to) {
-         return upstream.count({from, to}) > 0;
+  for (const std::size_t place :
+       rootFirst(components.size(), [&](std::size_t root, std::size_t victim) {
+         return roots.count({components[root], components[victim]}) > 0;
        })) {
-    roots_first.push_back(components.at(index));
+    roots_first.push_back(components.at(place));
   }
   return roots_first;
 }
