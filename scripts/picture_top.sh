@@ -31,7 +31,7 @@ await 120 "the monitor is quiet" rosservice info /self_awareness/mute
 await 120 "the monitor is quiet" says 'normal communication'
 
 say "Making docs/top.png"
-/usr/bin/python3 -m self_awareness_evaluation.terminal_picture "$checkout/docs/top.png" '/player died' rosrun self_awareness top &
+/usr/bin/python3 -m self_awareness_evaluation.terminal_picture "$checkout/docs/top.png" '/player silent' rosrun self_awareness top &
 picture=$!
 rosservice call /self_awareness/mute "{component: /battery, duration: 600}"
 sleep 20

@@ -169,23 +169,25 @@ bool BusyMachine::areUnrelated(const std::vector<std::size_t>& late,
                                const std::vector<bool>& silent,
                                const std::vector<Excess>& excesses) const {
   const Explanation::Leads leads = explanation_.leads(excesses);
-  // What comes late of itself, or after who is late for that reason, is not.
-  const auto isVictim = [&](std::size_t component, std::size_t cause) {
-    const std::set<std::size_t>& after = lateness_[component].after;
-    return explanation_.follows(component, cause, leads) &&
-           std::none_of(after.begin(), after.end(), [&](std::size_t other) {
-             return other == component || other == cause ||
-                    explanation_.follows(other, cause, leads);
-           });
-  };
   for (std::size_t cause = 0; cause < silent.size(); ++cause) {
-    if (silent[cause] || std::binary_search(late.begin(), late.end(), cause)) {
-      const auto others = std::count_if(late.begin(), late.end(), [&](std::size_t component) {
-        return component != cause && !isVictim(component, cause);
-      });
-      if (static_cast<double>(others + 1) < model_->tuning().fewest_busy) {
-        return false;
-      }
+    if (!silent[cause] && !std::binary_search(late.begin(), late.end(), cause)) {
+      continue;
+    }
+    const std::vector<bool> downstream = explanation_.downstreamOf(cause, leads);
+    // Who comes late of itself, or after one that is downstream, too, is no victim.
+    const auto isVictim = [&](std::size_t component) {
+      const std::set<std::size_t>& after = lateness_[component].after;
+      return component != cause && downstream[component] &&
+             std::none_of(after.begin(), after.end(), [&](std::size_t other) {
+               return other == component || other == cause || downstream[other];
+             });
+    };
+    const auto victims =
+        static_cast<std::size_t>(std::count_if(late.begin(), late.end(), isVictim));
+    const bool is_late = !silent[cause];
+    if (static_cast<double>(late.size() - victims + (is_late ? 0 : 1)) <
+        model_->tuning().fewest_busy) {
+      return false;
     }
   }
   return true;

@@ -40,6 +40,10 @@ StoppedTogether::Found StoppedTogether::excuse(
     std::vector<Excess>& excesses, const Limits& limits, const Scorer& scorer,
     const std::map<std::string, std::int64_t>& strangers, const std::vector<bool>& may_be_silent) {
   Found found;
+  if (std::none_of(excesses.begin(), excesses.end(),
+                   [](const Excess& excess) { return excess.share > 1; })) {
+    return found;
+  }
   const Window window{limits, scorer.heard(), excesses};
   found.silent = everything(window, strangers);
   if (found.silent) {
@@ -116,10 +120,6 @@ std::vector<std::string> StoppedTogether::namesOf(const std::set<std::size_t>& c
 
 std::optional<Silent> StoppedTogether::everything(
     const Window& window, const std::map<std::string, std::int64_t>& strangers) const {
-  if (std::none_of(window.excesses.begin(), window.excesses.end(),
-                   [](const Excess& excess) { return excess.share > 1; })) {
-    return std::nullopt;
-  }
   const std::vector<Component> components = look(window);
   Group all;
   std::map<std::string, Group> hosts;

@@ -50,6 +50,22 @@ Explanation::Leads Explanation::leads(const std::vector<Excess>& excesses) const
   return leads;
 }
 
+std::vector<bool> Explanation::downstreamOf(std::size_t component, const Leads& leads) const {
+  std::vector<bool> downstream(model_->components().size(), false);
+  for (std::size_t other = 0; other < downstream.size(); ++other) {
+    downstream[other] = upstream_->isUpstream(component, other);
+  }
+  for (bool grows = upstream_->empty(); grows;) {
+    grows = false;
+    for (const auto& [leader, follower] : leads) {
+      const bool is_new = (leader == component || downstream[leader]) && !downstream[follower];
+      downstream[follower] = downstream[follower] || is_new;
+      grows = grows || is_new;
+    }
+  }
+  return downstream;
+}
+
 std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
                                            const Scorer& scorer,
                                            const RecentEvents& events) const {
@@ -152,6 +168,7 @@ void Explanation::accuse(const Excess& excess, const Window& window,
     const double usual = finding == Finding::kUnanswered ? 0 : model_->meanGap(track.to);
     later.due = std::min(later.due, excess.onset + static_cast<std::int64_t>(usual));
     later.latest = std::max(later.latest, excess.onset + model_->longestGap(track.to));
+    later.near = later.near || excess.share > tuning_.near_limit;
     later.sure = later.sure || excess.share > 1;
   }
 }
@@ -168,8 +185,11 @@ std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accuse
   for (auto found = left; found != accused.end();) {
     found = std::find_if(left, accused.end(), [&](const Accused& each) {
       return std::any_of(accused.begin(), left, [&](const Accused& victim) {
+        // Where nobody knows who hears whom, it is who was missed first.
+        const bool is_earlier = upstream_->empty() && each.near &&
+                                victim.wrong == Wrong::kAbsent && each.due < victim.due;
         return (victim.abnormal || victim.wrong == Wrong::kAbsent) &&
-               isRoot(each, victim, window.leads);
+               (is_earlier || isRoot(each, victim, window.leads));
       });
     });
     if (found != accused.end()) {

@@ -37,12 +37,9 @@ class Explanation {
                                 const RecentEvents& events) const;
   /// @param excesses all that is unusual
   Leads leads(const std::vector<Excess>& excesses) const;
-  /// Whether a component gets messages of another one, or, where nobody knows who hears whom,
-  /// follows it.
-  bool follows(std::size_t component, std::size_t other, const Leads& leads) const {
-    return upstream_->empty() ? leads.count({other, component}) > 0
-                              : upstream_->isUpstream(other, component);
-  }
+  /// Who gets messages of a component, or, where nobody knows who hears whom, follows it, or who
+  /// does; by the number of the component.
+  std::vector<bool> downstreamOf(std::size_t component, const Leads& leads) const;
 
  private:
   /// What is wrong with a component, the likeliest to be a cause first.
@@ -59,6 +56,7 @@ class Explanation {
     // beyond its limit; and whether something else of it was heard since.
     std::int64_t due = std::numeric_limits<std::int64_t>::max();
     std::int64_t latest = 0;
+    bool near = false;  // its limit
     bool sure = false;
     bool alive = false;
   };

@@ -23,6 +23,13 @@ Events robot(std::int64_t length, unsigned seed) {
                    irregular(kC, 0, length, 30 * kMillisecond, seed + 100)});
 }
 
+// A asks about every 4 s, B answers after 0.4 s, and C comes often.
+Events requests(std::int64_t length, unsigned seed) {
+  const Events asked = irregular(kA, 0, length, 4 * kSecond, seed);
+  return together({asked, answers(kB, asked, 400 * kMillisecond),
+                   irregular(kC, 0, length, 30 * kMillisecond, seed + 100)});
+}
+
 class ExplanationTest : public testing::Test {
  public:
   void add(const Event& event) {
@@ -96,6 +103,42 @@ TEST_F(ExplanationTest, ARootThatIsNearItsLimitIsNamedAlready) {
   EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kB}));
   EXPECT_FALSE(named[0].abnormal);
   EXPECT_TRUE(named[1].abnormal);
+}
+
+TEST_F(ExplanationTest, WhoIsSilentForLongerThanEverIsARootAndNoMore) {
+  const std::int64_t end = last_ + 2 * model_->longestGap(kA);
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 0.5}, {overdue(kC), 1.5}}, end)),
+            (std::vector<EventId>{kC, kA}))
+      << "nobody hears it";
+  graph_->connect("/a", "/a/out", "/c");
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 0.5}, {overdue(kC), 1.5}}, end)),
+            (std::vector<EventId>{kA, kC}));
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 0.5}, {overdue(kC), 1.5}}, last_ + kMillisecond)),
+            std::vector<EventId>{kC});
+}
+
+TEST_F(ExplanationTest, WhoFellSilentAfterItsVictimIsNoRoot) {
+  graph_->connect("/a", "/a/out", "/b");
+  const std::int64_t later = last_ + 10 * model_->longestGap(kB);
+  add({later, kA});
+  EXPECT_EQ(idsOf(suspects({{overdue(kA), 1.5}, {overdue(kB), 1.5}}, later + 5 * kSecond)),
+            (std::vector<EventId>{kB, kA}));
+}
+
+TEST_F(ExplanationTest, OfWhoIsStillHeardATopicIsSilentOrAnAnswerMissing) {
+  const std::vector<EventType> types{{"/a", "/x", "T"}, {"/b", "/y", "T"}, {"/b", "/z", "T"}};
+  restart(watch(countsOf({requests(400 * kSecond, 1)}, types),
+                countsOf({later(requests(400 * kSecond, 2))}, types)),
+          requests(20 * kSecond, 3));
+  const auto kindOf = [&](const Track& track) {
+    return suspects({{track, 1.5}}, last_ + 60 * kSecond).at(0).reason.kind;
+  };
+  add({last_ + kSecond, kA});
+  EXPECT_EQ(toString(kindOf(overdue(kB))), "silent");
+  EXPECT_EQ(toString(kindOf(trackOf(kDeadlines, kB, kA))), "silent") << "nothing of it comes";
+  add({last_ + 30 * kSecond, kC});
+  EXPECT_EQ(toString(kindOf(overdue(kB))), "topic silent");
+  EXPECT_EQ(toString(kindOf(trackOf(kDeadlines, kB, kA))), "unanswered");
 }
 
 TEST_F(ExplanationTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
@@ -220,13 +263,6 @@ TEST_F(ExplanationTest, WhoAnswersEverySecondMessageIsNotToBlameWhileTheseComeAt
   EXPECT_EQ(idsOf(suspects(reached, 20400 * kMillisecond)), (std::vector<EventId>{kB, kA}));
 }
 
-// A asks about every 4 s, B answers after 0.4 s, and C comes often.
-Events requests(std::int64_t length, unsigned seed) {
-  const Events asked = irregular(kA, 0, length, 4 * kSecond, seed);
-  return together({asked, answers(kB, asked, 400 * kMillisecond),
-                   irregular(kC, 0, length, 30 * kMillisecond, seed + 100)});
-}
-
 TEST_F(ExplanationTest, WhoOwesAnAnswerIsNamedAsASilentOne) {
   restart(watch(startOf(requests(400 * kSecond, 1), 0), startOf(requests(400 * kSecond, 2), 1)),
           requests(20 * kSecond, 3));
@@ -294,9 +330,9 @@ TEST_F(ExplanationTest, FurtherComponentsFollowIfTheirEvidenceAloneIsAbnormal) {
   restart(watch(countsOf({events}, types), {}), events);
   std::vector<std::pair<Track, double>> reached;
   for (EventId id = 0; id < types.size(); ++id) {
-    reached.emplace_back(overdue(id), id == 6 ? 0.9 : 1.5);
+    reached.emplace_back(overdue(id), id == 6 ? 0.5 : 1.5);
   }
-  // 5 is another type of a component that is named, 6 is near its limit.
+  // 5 is another type of a component that is named, 6 is far from its limit.
   std::vector<EventId> named = idsOf(suspects(reached, last_ + 3 * kSecond));
   std::sort(named.begin(), named.end());
   EXPECT_EQ(named, (std::vector<EventId>{0, 1, 2, 3, 4, 7}));
