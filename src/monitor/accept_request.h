@@ -46,7 +46,7 @@ std::string offerOf(const Accept::Request& request, const Acceptable& acceptable
 WantedAcceptances requestOf(const Accept::Request& request, const Acceptable& acceptable,
                             const core::Acceptances& accepted);
 
-/// "/driver on /scan (died)".
+/// "/driver on /scan (silent)".
 std::string inWordsOf(const core::Acceptance& acceptance);
 /// The same of several.
 std::string inWordsOf(const std::vector<core::Acceptance>& all);

@@ -87,7 +87,7 @@ def test_a_damaged_file_is_named(tmp_path) -> None:
 
 @pytest.mark.parametrize('entry, words', [
     (Acceptance('/a', '/t', 'slow'), '/a on /t (slow)'), (Acceptance('/a'), '/a'),
-    (Acceptance('/t', '/t', 'silent'), '/t (died)'), (Acceptance(topic='/t*'), '/t*')])
+    (Acceptance('/t', '/t', 'silent'), '/t (silent)'), (Acceptance(topic='/t*'), '/t*')])
 def test_it_is_said_as_the_monitor_says_it(entry: Acceptance, words: str) -> None:
     assert accepted_file.in_words(entry) == words
 

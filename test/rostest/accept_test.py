@@ -85,11 +85,11 @@ class AcceptTest(TrainedCase):
             self.assertIn('does not stand any more', accept(alarm=alarm.alarm + 1).message)
             said = accept(alarm=alarm.alarm)
             self.assertTrue(said.success, said.message)
-            self.assertIn('/driver on /scan (died)', said.message)
+            self.assertIn('/driver on /scan (silent)', said.message)
             self.await_normal(listener)
             await_condition('it is not watched', lambda: (
                 listener.value('/driver', 'death found after [s]') == 'not watched: accepted'), 20)
-            self.assertIn('(died)', listener.value('/driver', 'accepted'))
+            self.assertIn('(silent)', listener.value('/driver', 'accepted'))
             self.await_value(listener, 'not watched', '/driver (accepted)')
             self.assertIn('not watched: accepted', listener.diagnostics('/driver')[-1].message)
             self.assertFalse([status.message for status in listener.next_statuses(50)

@@ -91,7 +91,7 @@ class IncidentsTest(TrainedCase):
                 listener.await_settled()
             shown = run_program('incidents', str(opened.id), '--file',
                                 self.path('recorder/self_awareness.incidents'))
-            self.assertIn('/driver silent', shown)
+            self.assertIn('/driver (/scan) fell silent at ', shown)
             self.assertIn('score {} --model {} --report'.format(
                 opened.recording, self.path('model')), shown)
 

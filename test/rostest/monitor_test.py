@@ -124,7 +124,7 @@ class MonitorTest(unittest.TestCase):
         status = await_condition('ERROR of the whole', lambda: next(
             (s for s in listener.diagnostics('communication')
              if s.level == DiagnosticStatus.ERROR), None), 5)
-        self.assertIn('/player on /scan: silent for', status.message)
+        self.assertIn('/player (/scan) stopped sending at ', status.message)
         await_condition('ERROR of the player', lambda: any(
             s.level == DiagnosticStatus.ERROR for s in listener.diagnostics('/player')), 5)
         await_condition('ERROR on /diagnostics_agg', lambda: (

@@ -93,6 +93,8 @@ class Judge : public core::Judge {
   void excuseBySenders(const Window& window);
   /// The channels that speak against somebody, as Judgement::evidence.
   std::string evidenceOf(const Judgement& judgement) const;
+  /// Whether anything is unusual that is not accepted.
+  bool isUnusual() const;
   /// Whether a track beyond its limit is so beyond all doubt.
   bool isCertain() const;
   /// The suspects of a window with evidence of known event types.
@@ -207,7 +209,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   judgement.score = -std::max(largest, never_heard_.share());
   judgement.threshold = kThreshold;
   if (who_sends_.isAbnormal() ||
-      (judgement.busy && ((judgement.busy->late > 0 && !unusual_->empty()) ||
+      (judgement.busy && ((judgement.busy->late > 0 && isUnusual()) ||
                           judgement.busy->starved > model_->tuning().longest_starvation))) {
     // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
     judgement.score = std::min(*judgement.score, kStillBusy);
@@ -349,6 +351,11 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
     std::for_each(suspects->begin(), suspects->end(), add);
   }
   return named;
+}
+
+bool Judge::isUnusual() const {
+  return std::any_of(unusual_->begin(), unusual_->end(),
+                     [](const Excess& excess) { return excess.excuse != Excuse::kAccepted; });
 }
 
 bool Judge::isCertain() const {

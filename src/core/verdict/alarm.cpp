@@ -50,9 +50,9 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
   const bool is_named = std::any_of(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
     return suspect.component == alarm.culprit;
   });
-  if (!(culprit != nullptr && is_named) && verdict.busy &&
-      (culprit != nullptr ? verdict.busy->since <= culprit->onset
-                          : alarm.kind == Kind::kNewMode || alarm.suspects.empty())) {
+  const bool nobody = alarm.culprit.empty() && alarm.kind != Kind::kAllSilent;
+  const std::int64_t began = culprit != nullptr ? culprit->onset : alarm.begin;
+  if (verdict.busy && verdict.busy->since <= began && (culprit != nullptr ? !is_named : nobody)) {
     alarm.kind = Kind::kBusyMachine;
     alarm.culprit.clear();
     alarm.reason.clear();

@@ -112,7 +112,7 @@ std::string utc(std::int64_t stamp) {
 /// "0.1 s", with no more digits than a gap needs.
 std::string gap(double seconds) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.2g s", seconds);
+  std::snprintf(text, sizeof text, seconds < 10 ? "%.2g s" : "%.0f s", seconds);
   return text;
 }
 
@@ -172,12 +172,18 @@ std::string sentence(const Alarm& alarm, const std::string& shared) {
     story.reason = alarm.busy ? describe(*alarm.busy) : "the machine was busy";
   }
   story.back = alarm.over ? ", until " + story.end : "";
+  const Suspect* const culprit = alarm.suspectToBlame();
+  const bool is_left =
+      alarm.culprit.empty() ? alarm.kind == Kind::kAllSilent && !alarm.silent : culprit == nullptr;
+  if (is_left && !alarm.reason.empty()) {  // of an alarm of before, no more is known
+    return (alarm.culprit.empty() ? "" : alarm.culprit + ": ") + alarm.reason;
+  }
   if (alarm.culprit.empty()) {
     return sentence(story);
   }
-  Reason reason;  // of an alarm of before the start, the kind alone is known
+  Reason reason;
   reason.kind = alarm.kind;
-  if (const Suspect* const culprit = alarm.suspectToBlame()) {
+  if (culprit != nullptr) {
     reason = culprit->reason;
     story.topic = culprit->topic;
     story.begin = culprit->onset > 0 ? utc(culprit->onset) : story.begin;
@@ -189,7 +195,9 @@ std::string sentence(const Alarm& alarm, const std::string& shared) {
   story.wrong = shortly(reason, story.is_silence, alarm.over);
   if (story.is_silence) {
     const bool is_known = std::isfinite(reason.usual);
-    return sentence(story) + (is_known ? ", usually every " + gap(reason.usual) : "");
+    const bool says_more = !alarm.reason.empty() && alarm.reason.rfind("silent for", 0) != 0;
+    return sentence(story) + (is_known ? ", usually every " + gap(reason.usual) : "") +
+           (says_more ? ": " + alarm.reason : "");
   }
   return sentence(story) + (is_there || alarm.reason.empty() ? "" : ": " + alarm.reason);
 }

@@ -72,6 +72,9 @@ std::string toString(Kind kind) {
 }
 
 std::optional<Kind> kindOf(const std::string& name) {
+  if (name == "died") {  // as files of before have it
+    return Kind::kSilent;
+  }
   for (int kind = 0; kind <= static_cast<int>(Kind::kTwoSenders); ++kind) {
     if (toString(static_cast<Kind>(kind)) == name) {
       return static_cast<Kind>(kind);

@@ -79,7 +79,7 @@ std::string wording(const core::Verdict& verdict, const std::optional<core::Alar
   if (!shared.empty() && !standing->culprit.empty()) {
     message += "; " + shared;
   }
-  message += " (" + evidence + ")";
+  message += evidence.empty() ? "" : " (" + evidence + ")";
   for (const self_awareness::Suspect& suspect : new_suspects) {
     if (suspect.component != standing->culprit) {
       message += "; now also " + describe(suspect);

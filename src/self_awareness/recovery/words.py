@@ -51,7 +51,7 @@ def values(actions: Sequence[Action], refused: Sequence[str], dry_run: bool) -> 
 
 
 def what(action: Action) -> str:
-    """Return an action in words: 'stop /player (step 1 of 2), since /player died: done: ...'."""
+    """Return an action in words: 'stop /player (step 1 of 2), since /player silent: done: ...'."""
     text = (f'{action.action} (step {action.step} of {action.steps}), since {action.component}: '
             f'{action.kind}')
     if not action.over:

@@ -86,6 +86,7 @@ Alarm alarmOf(Kind kind) {
 
 TEST(Sentence, OfAnAlarmIsAboutItsCulpritSinceTheOnset) {
   Alarm alarm = alarmOf(Kind::kSilent);
+  alarm.reason = "silent for 1 s";
   EXPECT_EQ(sentence(alarm),
             "/laser (/scan) stopped sending at 12:26:40 UTC, usually every 0.083 s");
   alarm.over = true;
@@ -93,6 +94,9 @@ TEST(Sentence, OfAnAlarmIsAboutItsCulpritSinceTheOnset) {
   EXPECT_EQ(sentence(alarm),
             "/laser (/scan) fell silent at 12:26:40 UTC, until 12:26:45 UTC, "
             "usually every 0.083 s");
+  alarm.reason = "not heard by the monitor: it refuses the connection";
+  EXPECT_EQ(sentence(alarm).rfind(": not heard by the monitor: it refuses the connection"),
+            sentence(alarm).size() - 53);
   alarm = alarmOf(Kind::kUnanswered);
   alarm.suspects.front().reason.after = "/client /request T";
   EXPECT_EQ(sentence(alarm), "/laser (/scan) does not answer since 12:26:40 UTC: its numbers");
@@ -100,10 +104,10 @@ TEST(Sentence, OfAnAlarmIsAboutItsCulpritSinceTheOnset) {
   EXPECT_EQ(sentence(alarm), "/laser (/scan) was not heard since the start: its numbers");
 }
 
-TEST(Sentence, OfAnAlarmOfBeforeTheStartKnowsItsKind) {
+TEST(Sentence, OfAnAlarmOfBeforeTheStartTellsItsReason) {
   Alarm alarm = alarmOf(Kind::kSlow);
   alarm.suspects.clear();
-  EXPECT_EQ(sentence(alarm), "/laser sends too seldom since 12:26:41 UTC: its numbers");
+  EXPECT_EQ(sentence(alarm), "/laser: its numbers");
   alarm.culprit.clear();
   alarm.kind = Kind::kBusyMachine;
   EXPECT_EQ(sentence(alarm, "the machine is busy"), "the machine is busy, since 12:26:41 UTC");

@@ -82,7 +82,7 @@ def test_the_recordings() -> None:
             of_case('outage', latency_s=0.9, level='ERROR', kind='silent', culprit='/a'),
             of_case(NORMAL, 'paper', hours=0.01), of_case('outage', 'paper', stood_before=True)]
     section = recordings.section(rows)
-    evidence = ('| wheeled, 1 | evidence | 5 | found | 0.90 s | ERROR, died, /a | 1 '
+    evidence = ('| wheeled, 1 | evidence | 5 | found | 0.90 s | ERROR, silent, /a | 1 '
                 '| 3.6 of 36.0 s |')
     assert evidence in section.pages[RESULTS] and evidence in section.pages[RESEARCH]
     assert ('| wheeled, 1 | paper | 5 | found, stood before | – | – | 0 | 0.0 of 36.0 s |'

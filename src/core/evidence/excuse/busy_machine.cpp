@@ -49,6 +49,7 @@ std::optional<Busy> BusyMachine::excuse(std::vector<Excess>& excesses, const Sco
   const Heard& heard = scorer.heard();
   if (const auto since = starvedSince(heard)) {
     busy = busy.value_or(Busy{0, 0, 0, *since});
+    busy->since = std::min(busy->since, *since);
     busy->starved = toSeconds(heard.windowEnd() - *since);
   }
   for (Excess& excess : excesses) {
@@ -86,7 +87,8 @@ std::optional<Busy> BusyMachine::late(const std::vector<Excess>& excesses, const
   const std::int64_t now = scorer.heard().windowEnd();
   std::vector<bool> silent(lateness_.size(), false);
   for (const Excess& excess : excesses) {
-    if (model_->finding(excess.track) == Finding::kSilent && excess.share > 1) {
+    if (model_->finding(excess.track) == Finding::kSilent && excess.share > 1 &&
+        excess.excuse != Excuse::kAccepted) {
       // Silences of a busy machine end soon.
       silent[excess.component] = silent[excess.component] || !busy_since_ ||
                                  !mayHold(model_->tracks()[excess.track].to, scorer.heard());
@@ -118,8 +120,9 @@ std::optional<Busy> BusyMachine::late(const std::vector<Excess>& excesses, const
       static_cast<double>(busy.late) * tuning.busy_one_in >=
           static_cast<double>(busy.components) &&
       static_cast<std::ptrdiff_t>(busy.late) >= std::count(silent.begin(), silent.end(), true);
-  const bool is_abnormal = std::any_of(excesses.begin(), excesses.end(),
-                                       [](const Excess& excess) { return excess.share > 1; });
+  const bool is_abnormal = std::any_of(excesses.begin(), excesses.end(), [](const Excess& excess) {
+    return excess.share > 1 && excess.excuse != Excuse::kAccepted;
+  });
   if (!many || (!busy_since_ && !(is_abnormal && areUnrelated(late, silent, excesses)))) {
     busy_since_.reset();
     return std::nullopt;
@@ -149,7 +152,12 @@ void BusyMachine::noteLate(const std::vector<Excess>& excesses, const Scorer& sc
     // What was late for long is news no more, but who is held up falls silent now and then.
     const bool is_held_up = busy_since_ && model_->finding(excess.track) == Finding::kSilent &&
                             mayHold(watched.to, scorer.heard());
-    if (excess.share <= model_->tuning().near_limit ||
+    const std::size_t after = model_->componentIndex(watched.from);
+    const bool is_between = model_->finding(excess.track) == Finding::kBetween;
+    const bool is_known =  // to say why takes time
+        lateness.last == now && (!is_between || lateness.after.count(after) > 0);
+    if (is_known || excess.excuse == Excuse::kAccepted ||
+        excess.share <= model_->tuning().near_limit ||
         !(is_held_up || (!is_back && !isAbsence(model_->finding(excess.track)) &&
                          isOfLate(excess.track, scorer, events)))) {
       continue;
@@ -159,8 +167,8 @@ void BusyMachine::noteLate(const std::vector<Excess>& excesses, const Scorer& sc
       lateness.after.clear();
     }
     lateness.last = now;
-    if (model_->finding(excess.track) == Finding::kBetween) {
-      lateness.after.insert(model_->componentIndex(watched.from));
+    if (is_between) {
+      lateness.after.insert(after);
     }
   }
 }

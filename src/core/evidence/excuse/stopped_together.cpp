@@ -48,9 +48,10 @@ StoppedTogether::Found StoppedTogether::excuse(
   found.silent = everything(window, strangers);
   if (found.silent) {
     for (Excess& excess : excesses) {
-      // Who fell silent before is none of them.
+      // Who fell silent before is none of them; what is left of a sum is no finding.
       if (found.silent->has(model_->components()[excess.component]) &&
-          isOfAbsence(model_->finding(excess.track)) && excess.excuse == Excuse::kNone) {
+          (isOfAbsence(model_->finding(excess.track)) || excess.share <= 1) &&
+          excess.excuse == Excuse::kNone) {
         excess.excuse = Excuse::kAllSilent;
       }
     }

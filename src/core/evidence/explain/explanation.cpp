@@ -84,7 +84,7 @@ std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
   for (EventId id = 0; id < model_->size(); ++id) {
     Accused& each = accused[model_->componentIndex(id)];
     each.alive = each.alive || (scorer.heard().hasSeen(id) && each.main != nullptr &&
-                                scorer.heard().stamps()[id] > each.due);
+                                scorer.heard().stamps()[id] > each.latest);
   }
   for (const Accused& each : order(std::move(accused), window)) {
     if (suspects.size() < kMostSuspects || each.abnormal) {
