@@ -113,7 +113,7 @@ class LiveRulesTest(MonitorCase):
                     (s for s in listener.statuses if s.unknown_events and not s.settling),
                     None), 20)
         self.assertEqual(status.level, SelfAwareness.WARN, status.message)
-        self.assertIn('/rostopic on /a: never seen in training, 1 in this window', status.message)
+        self.assertIn('never seen in training, 1 in this window', status.message)
 
     @again_if_disturbed
     def test_the_type_field_is_read_from_live_messages(self) -> None:

@@ -129,7 +129,7 @@ class MonitorTest(unittest.TestCase):
             s.level == DiagnosticStatus.ERROR for s in listener.diagnostics('/player')), 5)
         await_condition('ERROR on /diagnostics_agg', lambda: (
             self.aggregated['/Self-awareness sources/player'].level == DiagnosticStatus.ERROR), 10)
-        self.assertIn('/player on /scan',
+        self.assertIn('/player (/scan)',
                       self.aggregated['/Self-awareness/communication'].message)
         self.assertEqual([s for s in listener.diagnostics('/base')
                           if s.level == DiagnosticStatus.ERROR], [])
