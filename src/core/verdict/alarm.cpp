@@ -57,8 +57,8 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
     alarm.culprit.clear();
     alarm.reason.clear();
   }
-  const bool is_silent_with_them = !is_named && isAbsence(alarm.kind) && alarm.silent &&
-                                   alarm.silent->since <= alarm.begin &&
+  const bool is_silent_with_them = alarm.silent && (!is_named || !alarm.silent->others_go_on) &&
+                                   isAbsence(alarm.kind) && alarm.silent->since <= alarm.begin &&
                                    alarm.silent->has(alarm.culprit);
   if (alarm.silent && (alarm.kind == Kind::kAllSilent || alarm.kind == Kind::kNewMode ||
                        (verdict.silent && ((was_busy && !verdict.busy) || is_silent_with_them)))) {

@@ -9,6 +9,14 @@
 #include "core/evidence/explain/root_first.h"
 
 namespace self_awareness::core::evidence {
+namespace {
+
+/// Where all are silent, who they are is told, though none of them is to blame.
+bool isNamed(const Excess& excess) {
+  return excess.excuse == Excuse::kNone || excess.excuse == Excuse::kAllSilent;
+}
+
+}  // namespace
 
 Explanation::Explanation(std::shared_ptr<const Model> model,
                          std::shared_ptr<const Upstream> upstream)
@@ -71,13 +79,13 @@ std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
                                            const RecentEvents& events) const {
   std::vector<Suspect> suspects;
   if (std::all_of(excesses.begin(), excesses.end(),
-                  [](const Excess& excess) { return excess.excuse != Excuse::kNone; })) {
+                  [](const Excess& excess) { return !isNamed(excess); })) {
     return suspects;
   }
   const Window window{scorer, events, leads(excesses)};
   std::vector<Accused> accused(model_->components().size());
   for (const Excess& excess : excesses) {
-    if (excess.excuse == Excuse::kNone) {
+    if (isNamed(excess)) {
       accuse(excess, window, accused);
     }
   }
