@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "core/verdict/name_list.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core {
@@ -54,14 +55,6 @@ std::string plural(const std::string& words) {
   return verb == verbs.end() ? words : verb->second + words.substr(end);
 }
 
-std::string list(const std::vector<std::string>& names) {
-  std::string words;
-  for (std::size_t k = 0; k < names.size(); ++k) {
-    words += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
-  }
-  return words;
-}
-
 std::string subjectOf(const Story& story) {
   const std::vector<std::string>& names = story.components;
   if (names.size() > kMostNamed) {
@@ -69,7 +62,7 @@ std::string subjectOf(const Story& story) {
            names[2] + " and others)";
   }
   const bool has_topic = names.size() == 1 && !story.topic.empty() && story.topic != names[0];
-  return list(names) + (has_topic ? " (" + story.topic + ")" : "");
+  return listed(names, names.size()) + (has_topic ? " (" + story.topic + ")" : "");
 }
 
 std::string often(const Story& story, const std::string& when) {
@@ -95,7 +88,7 @@ std::string ofAll(const Story& story) {
     return (story.back.empty() ? "all nodes stopped sending " : "all nodes fell silent ") + when;
   }
   return "everything on host" + std::string(story.hosts.size() > 1 ? "s " : " ") +
-         list(story.hosts) + " fell silent " +
+         listed(story.hosts, story.hosts.size()) + " fell silent " +
          often(story, story.begin.empty() ? "since the start" : "at " + story.begin) + ": " +
          std::to_string(story.silent) + " nodes" + story.back;
 }

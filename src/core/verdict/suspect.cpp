@@ -4,22 +4,13 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "core/verdict/name_list.h"
+
 namespace self_awareness::core {
 namespace {
 
 constexpr std::size_t kMostNamed = 3;
 constexpr double kPause = 2;  // of who sends on [s]
-
-/// "a", "a and b", "a, b and c", or "a, b, c and 4 more".
-std::string list(const std::vector<std::string>& names) {
-  const std::size_t shown = std::min(names.size(), kMostNamed);
-  std::string words;
-  for (std::size_t k = 0; k < shown; ++k) {
-    words += (k == 0 ? "" : k + 1 == names.size() ? " and " : ", ") + names[k];
-  }
-  return shown == names.size() ? words
-                               : words + " and " + std::to_string(names.size() - shown) + " more";
-}
 
 std::string number(std::size_t count, const std::string& of) {
   return std::to_string(count) + " " + of + (count == 1 ? "" : "s");
@@ -123,8 +114,8 @@ Reason movedTo(const std::string& source, bool known, const std::vector<std::str
   reason.unit = unit::kSeconds;
   reason.value = age;
   reason.topics = topics;
-  reason.words = list(topics) + (topics.size() == 1 ? " comes" : " come") + " from " + source +
-                 " now, in training from " + list(before);
+  reason.words = listed(topics, kMostNamed) + (topics.size() == 1 ? " comes" : " come") +
+                 " from " + source + " now, in training from " + listed(before, kMostNamed);
   if (age > kPause) {
     char text[60];
     std::snprintf(text, sizeof text, ", the last one %.1f s ago", age);
@@ -142,8 +133,8 @@ Reason playsOn(const std::string& player, const std::vector<std::string>& topics
   Reason reason;
   reason.kind = Kind::kStranger;
   reason.topics = topics;
-  reason.words =
-      player + " plays on " + number(topics.size(), "topic") + " of this robot: " + list(topics);
+  reason.words = player + " plays on " + number(topics.size(), "topic") +
+                 " of this robot: " + listed(topics, kMostNamed);
   return reason;
 }
 

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,8 +30,7 @@ struct Story {
 /// An incident, or an alarm, in a sentence without its full stop: "/player (/scan) stopped sending
 /// at 29.9 s". All who tell of one say it: live, of recordings, in reports and for programs.
 std::string sentence(const Story& story);
-/// The same of an alarm or a suspicion, live: who is named by it, its numbers, and how many need
-/// messages of the culprit. Times are UTC.
+/// The same of an alarm or a suspicion, live: its culprit, and how that usually is. Times are UTC.
 /// @param shared what the components share is wrong with, in words; empty: it is not known
 std::string sentence(const Alarm& alarm, const std::string& shared = "");
 
