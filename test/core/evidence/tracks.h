@@ -53,6 +53,21 @@ inline std::vector<Excess> excessesOf(const std::shared_ptr<const Model>& model,
   return Excesses(model).closeWindow(shares, scorer);
 }
 
+/// A scorer that heard each event type for the last time so long ago [ns], and has closed a
+/// window.
+/// @param now end of the window [ns]
+inline Scorer heardLast(const std::shared_ptr<const Model>& model,
+                        const std::vector<std::int64_t>& ages, std::int64_t now) {
+  Scorer scorer(model, kWindow);
+  Events last;
+  for (EventId id = 0; id < ages.size(); ++id) {
+    last.push_back({now - ages[id], id});
+  }
+  addAll(scorer, together({last}));
+  scorer.closeWindow(now);
+  return scorer;
+}
+
 /// The number of one track.
 inline double& ofTrack(std::vector<double>& numbers, const Model& model,
                        const std::string& channel, EventId to, EventId from) {

@@ -87,8 +87,7 @@ class PairsState : public ChannelState {
   /// what was added to the sum is taken back here: so the many others need no check.
   void arm(std::uint32_t number, bool heard, bool first, double surprise);
   const Pair& pairOf(std::size_t track) const {
-    const auto place = std::find(track_of_.begin(), track_of_.end(), track);
-    return pairs_[static_cast<std::size_t>(place - track_of_.begin())];
+    return pairs_[pair_of_[expected_.numberOf(track)]];
   }
   void clear(std::uint32_t number) {
     pairs_[number].sum.clear();
@@ -102,6 +101,7 @@ class PairsState : public ChannelState {
   std::vector<Pair> pairs_;                       // by `to`
   std::vector<Range> pairs_of_;                   // by id of `to`
   std::vector<std::size_t> track_of_;             // by number of the pair
+  std::vector<std::uint32_t> pair_of_;            // number of the pair, by that of its track
   std::vector<Arming> arming_;                    // by number of the pair
   std::vector<std::vector<std::uint32_t>> with_;  // numbers of the pairs of a type, by id
 };
@@ -114,6 +114,7 @@ PairsState::PairsState(const ExpectedPairs& expected)
     : expected_(expected),
       numbers_(expected.model().tuning()),
       arming_numbers_(expected.model().tuning()),
+      pair_of_(expected.tracks().size()),
       arming_(expected.tracks().size()),
       with_(expected.model().size()) {
   std::vector<std::vector<std::size_t>> by_to(expected.model().size());
@@ -129,6 +130,7 @@ PairsState::PairsState(const ExpectedPairs& expected)
       with_[track.to].push_back(here);
       with_[track.from].push_back(here);
       track_of_.push_back(expected.tracks()[number]);
+      pair_of_[number] = here;
       pairs_.push_back({track.from, false, &expected.surprise(number), {}});
     }
     range.end = static_cast<std::uint32_t>(pairs_.size());

@@ -181,12 +181,7 @@ void Explanation::accuse(const Excess& excess, const Window& window,
   }
 }
 
-std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accused,
-                                                     const Window& window) const {
-  accused.erase(std::remove_if(accused.begin(), accused.end(),
-                               [](const Accused& each) { return each.main == nullptr; }),
-                accused.end());
-  // Who is absent, but not beyond its limit, is the root of who is to blame, or hardly is.
+void Explanation::setUnlikelyAside(std::vector<Accused>& accused, const Window& window) const {
   auto left = std::partition(accused.begin(), accused.end(), [](const Accused& each) {
     return each.sure || each.wrong != Wrong::kAbsent;
   });
@@ -205,6 +200,14 @@ std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accuse
     }
   }
   std::for_each(left, accused.end(), [](Accused& each) { each.wrong = Wrong::kOther; });
+}
+
+std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accused,
+                                                     const Window& window) const {
+  accused.erase(std::remove_if(accused.begin(), accused.end(),
+                               [](const Accused& each) { return each.main == nullptr; }),
+                accused.end());
+  setUnlikelyAside(accused, window);
   std::stable_sort(accused.begin(), accused.end(), [](const Accused& a, const Accused& b) {
     const auto of = [](const Accused& each) {
       return each.wrong == Wrong::kAbsent

@@ -72,6 +72,9 @@ class Explanation {
   /// Whether it says that its type has not come, for longer than is usual.
   bool isAbsent(const Excess& excess, const Window& window) const;
   void accuse(const Excess& excess, const Window& window, std::vector<Accused>& accused) const;
+  /// Who is absent, but not beyond its limit, is the root of who is to blame, or hardly is: then
+  /// it is among the rest.
+  void setUnlikelyAside(std::vector<Accused>& accused, const Window& window) const;
   /// Those with something wrong, ordered.
   std::vector<Accused> order(std::vector<Accused> accused, const Window& window) const;
   std::vector<Accused> rootFirst(const std::vector<Accused>& accused, const Window& window) const;

@@ -36,17 +36,15 @@ class ExcusesTest : public testing::Test {
     const double silent = chance(0.5) ? 0.6 : 0.2;
     const double slow = chance(0.7) ? 0.9 : 0.1;
     const std::int64_t stop = std::uniform_int_distribution<std::int64_t>(3, 40)(random) * kSecond;
-    scorer_ = std::make_unique<Scorer>(model_, kWindow);
-    Events last;
+    std::vector<std::int64_t> ages;
     std::vector<bool> is_silent;
     for (EventId id = 0; id < kComponents; ++id) {
       is_silent.push_back(chance(silent));
       // Four that stopped before would be a mode of their own.
       const std::int64_t age = id % 4 > 0 || chance(0.5) ? stop : 3 * stop / 2;
-      last.push_back({is_silent.back() ? kEnd - age : kEnd, id});
+      ages.push_back(is_silent.back() ? age : 0);
     }
-    addAll(*scorer_, together({last}));
-    scorer_->closeWindow(kEnd);
+    scorer_ = std::make_unique<Scorer>(heardLast(model_, ages, kEnd));
     std::vector<double> shares = allTracks(*model_, 0);
     for (EventId id = 0; id < kComponents; ++id) {
       ofTrack(shares, *model_, kOverdue, id) = is_silent[id] ? 2 : 0;

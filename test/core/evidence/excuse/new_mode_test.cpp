@@ -66,13 +66,7 @@ class NewModeTest : public testing::Test {
 
   /// Judges who stopped so long ago [ns], all of them beyond their limits.
   StoppedTogether::Found found(const std::vector<std::int64_t>& ages, std::int64_t now) {
-    Scorer scorer(model_, kWindow);
-    Events last;
-    for (EventId id = 0; id < kRobot.size(); ++id) {
-      last.push_back({now - ages[id], id});
-    }
-    addAll(scorer, together({last}));
-    scorer.closeWindow(now);
+    const Scorer scorer = heardLast(model_, ages, now);
     shares_ = allTracks(*model_, 0);
     for (EventId id = 0; id < kRobot.size(); ++id) {
       share(id) = ages[id] > 0 ? 2 : 0;

@@ -44,13 +44,7 @@ class StoppedTogetherTest : public testing::Test {
 
   /// Who is silent `after` the time when each stopped [ns].
   std::optional<Silent> find(const std::vector<std::int64_t>& ages, double share = 2) {
-    Scorer scorer(model_, kWindow);
-    Events last;
-    for (EventId id = 0; id < kRobot.size(); ++id) {
-      last.push_back({kEnd - ages[id], id});
-    }
-    addAll(scorer, together({last}));
-    scorer.closeWindow(kEnd);
+    const Scorer scorer = heardLast(model_, ages, kEnd);
     std::vector<double> shares = allTracks(*model_, 0);
     for (EventId id = 0; id < kRobot.size(); ++id) {
       ofTrack(shares, *model_, kOverdue, id) = ages[id] > 0 ? share : 0;
