@@ -119,10 +119,11 @@ void Monitor::resume() {
   const bool stands = standing && session_ && session_->calibrated();
   incidents_.restore(stands ? std::optional(standing->alarm.alarm) : std::nullopt);
   if (stands) {
-    session_->detector().resume(
-        ros1::fromMessages(standing->alarm.suspects, session_->vocabulary()));
+    const auto suspects =
+        ros1::fromMessages(standing->alarm.suspects, session_->vocabulary());
+    session_->detector().resume(suspects);
     ROS_WARN("an alarm stood when this monitor ended: it stands until its cause is over");
-    announcer_.resume(standing->alarm, ros1::fromRosTime(standing->since), standing->recording);
+    announcer_.resume(*standing, suspects);
   }
 }
 

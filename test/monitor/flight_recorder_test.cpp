@@ -17,6 +17,7 @@
 #include "../in_folder.h"
 #include "../problem.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness {
 namespace {
@@ -62,11 +63,12 @@ class FlightRecorderTest : public InFolder {
   }
   /// An alarm of before the start stands.
   void stand() {
-    SelfAwareness alarm;
-    alarm.level = SelfAwareness::ERROR;
-    alarm.kind = SelfAwareness::SILENT;
+    self_awareness::StandingAlarm before;
+    before.since = ros1::toRosTime(kStart);
+    before.alarm.level = SelfAwareness::ERROR;
+    before.alarm.kind = SelfAwareness::SILENT;
     ros1::AlarmState state;
-    state.resume(alarm, kStart, "");
+    state.resume(before, {});
     recorder().onAlarm(state);
   }
   static std::int64_t steady(std::int64_t ros) { return ros - kStart + kSteady; }

@@ -45,7 +45,11 @@ class IncidentsTest(TrainedCase):
             of = self.of_driver()
             return len(of) == 1 and all(getattr(of[0], field) == value
                                         for field, value in fields.items())
-        await_condition(what, found, 40)
+        try:
+            await_condition(what, found, 40)
+        except AssertionError:
+            print('of {}: {}'.format(what, self.of_driver()))
+            raise
         return self.of_driver()[0]
 
     def listed(self, *options: str) -> List[Dict[str, Any]]:

@@ -142,6 +142,9 @@ void Alarms::begin(const Verdict& verdict, std::int64_t end, const std::optional
     alarm.kind = before->kind;
     alarm.culprit = before->culprit;
     alarm.reason = before->reason;
+    if (const Suspect* const culprit = before->suspectToBlame()) {
+      alarm.suspects = {*culprit};
+    }
   }
 }
 
@@ -149,8 +152,7 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
   Alarm& alarm = *standing_;
   const bool stands = alarm.level == levelOf(verdict);
   const std::vector<Suspect> suspects = withComponents(verdict.suspects, vocabulary);
-  if (stands && alarm.evidence.empty() && alarm.suspects.empty() &&
-      !(verdict.evidence.empty() && suspects.empty())) {
+  if (stands && alarm.evidence.empty() && !verdict.evidence.empty()) {
     alarm.evidence = verdict.evidence;
     alarm.suspects = suspects;
     alarm.culprit.clear();

@@ -64,20 +64,22 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
   message_.unknown_events = static_cast<std::uint32_t>(verdict.window->unknown());
 }
 
-void AlarmState::resume(const self_awareness::SelfAwareness& alarm, std::int64_t since,
-                        const std::string& recording) {
+void AlarmState::resume(const self_awareness::StandingAlarm& before,
+                        std::vector<core::Suspect> suspects) {
+  const self_awareness::SelfAwareness& alarm = before.alarm;
+  level_since_ = fromRosTime(before.since);
   core::Alarm standing;
   standing.id = alarm.alarm;
   standing.level = core::Alarm::Level::kAlarm;
-  standing.begin = standing.end = since;
+  standing.begin = standing.end = level_since_;
   standing.kind = core::kindOf(alarm.kind).value();
   standing.culprit = alarm.component;
   standing.reason = alarm.reason;
   standing.evidence = alarm.evidence;
+  standing.suspects = std::move(suspects);
   alarms_.resume(std::move(standing));
   message_ = alarm;
-  level_since_ = since;
-  recording_ = recording;
+  recording_ = before.recording;
 }
 
 bool AlarmState::standDown(const std::string& message, std::int64_t now) {

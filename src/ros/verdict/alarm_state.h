@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "self_awareness/SelfAwareness.h"
+#include "self_awareness/StandingAlarm.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/alarm.h"
 #include "self_awareness/core/verdict/detector.h"
@@ -31,11 +33,9 @@ class AlarmState {
   void add(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window,
            const Circumstances& circumstances = {});
   /// Goes on with an alarm of before the start, whose kind is one.
-  /// @param alarm as it was published
-  /// @param since end of the window that raised it [ns]
-  /// @param recording path of the file that holds its events; empty: there is none
-  void resume(const self_awareness::SelfAwareness& alarm, std::int64_t since,
-              const std::string& recording);
+  /// @param before as it was kept
+  /// @param suspects of it, the most likely first
+  void resume(const self_awareness::StandingAlarm& before, std::vector<core::Suspect> suspects);
   /// Takes back what stands, for another reason than a window: there is nothing abnormal any more.
   /// @param message the reason
   /// @param now ROS time [ns]

@@ -16,9 +16,9 @@ void Announcer::add(const core::Verdict& verdict, const core::Vocabulary& vocabu
   }
 }
 
-void Announcer::resume(const self_awareness::SelfAwareness& alarm, std::int64_t since,
-                       const std::string& recording) {
-  alarm_.resume(alarm, since, recording);
+void Announcer::resume(const self_awareness::StandingAlarm& before,
+                       std::vector<core::Suspect> suspects) {
+  alarm_.resume(before, std::move(suspects));
   handlers_.on_alarm(alarm_.message());
 }
 

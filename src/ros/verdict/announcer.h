@@ -32,8 +32,7 @@ class Announcer {
   void add(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window,
            const Circumstances& circumstances = {});
   /// Says that an alarm of before the start stands, as AlarmState::resume().
-  void resume(const self_awareness::SelfAwareness& alarm, std::int64_t since,
-              const std::string& recording);
+  void resume(const self_awareness::StandingAlarm& before, std::vector<core::Suspect> suspects);
   /// Says that what stood is over, as AlarmState::standDown().
   void standDown(const std::string& message, std::int64_t now);
   /// As AlarmState::forgetWindow().

@@ -51,8 +51,14 @@ std::vector<core::Suspect> fromMessages(const std::vector<self_awareness::Suspec
       core::Suspect suspect;
       suspect.id = *id;
       suspect.component = message.component;
+      suspect.topic = message.scope;
+      suspect.onset = fromRosTime(message.onset);
       suspect.since = fromRosTime(message.since);
       suspect.reason.kind = *kind;
+      suspect.reason.after = message.after;
+      suspect.reason.unit = message.unit;
+      suspect.reason.value = message.value;
+      suspect.reason.usual = message.usual;
       suspect.reason.words = message.reason;
       suspects.push_back(suspect);
     }

@@ -41,6 +41,7 @@ std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>
     message.unit = reason.unit;
     message.value = reason.value;
     message.usual = reason.usual;
+    message.onset = toRosTime(suspect.onset);
     message.since = toRosTime(suspect.since);
     message.silence = silenceOf(reason);
     const bool in_seconds = reason.unit == core::unit::kSeconds;

@@ -124,7 +124,8 @@ TEST_F(AlarmsTest, ASuspicionThatAnAlarmLeavesIsAboutTheSame) {
   EXPECT_EQ(alarms_.standing()->level, Alarm::Level::kSuspicion);
   expectBlamed("/b", Kind::kSlow);
   EXPECT_EQ(alarms_.standing()->evidence, "");
-  EXPECT_TRUE(alarms_.standing()->suspects.empty());
+  ASSERT_EQ(alarms_.standing()->suspects.size(), 1U);
+  EXPECT_EQ(alarms_.standing()->suspects[0].component, "/b");
   add(verdict(kSuspicion, {suspect(0, Kind::kFast)}));
   expectBlamed("/a", Kind::kFast);
 }

@@ -29,6 +29,9 @@ class StandingAlarmTest : public OneMessageTest<self_awareness::StandingAlarm> {
     suspect.type = "T";
     suspect.kind = "silent";
     suspect.since.sec = 7;
+    suspect.onset.sec = 5;
+    suspect.unit = "s";
+    suspect.usual = 0.1;
     alarm.suspects = {suspect};
   }
   void expectRefused(const std::string& why, const std::function<void(SelfAwareness&)>& change) {
@@ -85,7 +88,10 @@ TEST_F(StandingAlarmTest, SuspectsAreThoseThatTheModelKnows) {
   ASSERT_EQ(suspects.size(), 1U);
   EXPECT_EQ(suspects[0].id, 1U);
   EXPECT_EQ(suspects[0].component, "/driver");
+  EXPECT_EQ(suspects[0].topic, "/scan");
+  EXPECT_EQ(suspects[0].onset, 5000000000);
   EXPECT_EQ(suspects[0].since, 7000000000);
+  EXPECT_EQ(suspects[0].reason.usual, 0.1);
   EXPECT_EQ(suspects[0].reason.kind, core::Kind::kSilent);
 }
 

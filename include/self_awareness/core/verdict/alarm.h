@@ -39,8 +39,8 @@ struct Alarm {
   double lowest_score = std::numeric_limits<double>::quiet_NaN();
   std::optional<Busy> busy;      ///< as the first window said that does
   std::optional<Silent> silent;  ///< as the window said with most components
-  /// Of the window that raised it, the most likely first. Their components are known, also those
-  /// of strangers.
+  /// Of the window that raised it, the most likely first; of a suspicion that an alarm left, its
+  /// culprit. Their components are known, also those of strangers.
   std::vector<Suspect> suspects;
   std::vector<Suspect> later;  ///< of further components, each with its time (since)
 
