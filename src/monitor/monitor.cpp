@@ -34,6 +34,7 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
       kept_logs_(
           parameters_.kept_logs, [this] { return source(); }, wallNow()),
       not_heard_(*this),
+      blocked_(*this, [this](std::set<std::string> nodes) { live_->ask(std::move(nodes)); }),
       restarts_(*this),
       keeper_(folderOf(parameters_.recorder), parameters_.run_id),
       incidents_(folderOf(parameters_.recorder),
@@ -43,8 +44,8 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
       accepts_(calls_, *this,
                [this]() -> const self_awareness::Incidents& { return incidents_.incidents(); }),
       mutes_(calls_, *this),
-      parts_({&reports_, &operators_, &recorder_, &kept_logs_, &not_heard_, &quotes_, &restarts_,
-              &keeper_, &incidents_, &accepts_, &mutes_}) {
+      parts_({&reports_, &operators_, &recorder_, &kept_logs_, &not_heard_, &blocked_, &quotes_,
+              &restarts_, &keeper_, &incidents_, &accepts_, &mutes_}) {
   node_handle.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
   status_publisher_ = private_node_handle_.advertise<self_awareness::SelfAwareness>("status", 100);
@@ -119,8 +120,7 @@ void Monitor::resume() {
   const bool stands = standing && session_ && session_->calibrated();
   incidents_.restore(stands ? std::optional(standing->alarm.alarm) : std::nullopt);
   if (stands) {
-    const auto suspects =
-        ros1::fromMessages(standing->alarm.suspects, session_->vocabulary());
+    const auto suspects = ros1::fromMessages(standing->alarm.suspects, session_->vocabulary());
     session_->detector().resume(suspects);
     ROS_WARN("an alarm stood when this monitor ended: it stands until its cause is over");
     announcer_.resume(*standing, suspects);

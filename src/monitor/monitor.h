@@ -12,6 +12,7 @@
 
 #include "accept_service.h"
 #include "alarm_keeper.h"
+#include "blocked_node.h"
 #include "flight_recorder.h"
 #include "host.h"
 #include "incident_keeper.h"
@@ -203,6 +204,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   FlightRecorder recorder_;
   KeptLogs kept_logs_;
   NotHeard not_heard_;
+  BlockedNode blocked_;
   LogQuotes quotes_;
   RestartWatch restarts_;
   AlarmKeeper keeper_;

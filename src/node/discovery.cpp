@@ -4,9 +4,11 @@
 #include <ros/this_node.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <utility>
 
+#include "ros/live/hanging_nodes.h"
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness {
@@ -14,6 +16,8 @@ namespace {
 
 // A master that takes longer than this to answer all that it is asked hangs.
 constexpr std::chrono::seconds kPatience(5);
+// A node that takes longer than this to say who it is hangs.
+constexpr std::chrono::milliseconds kPatienceOfNode(500);
 
 // Topics that are subscribed to stay: the first by name may be anybody's.
 std::size_t leaveOutMost(const std::set<std::string>& model_topics,
@@ -118,6 +122,32 @@ Discovery::State Discovery::state() const {
 void Discovery::run() {
   while (const std::optional<Wanted> next = awaitPoll()) {
     poll(*next);
+    askNodes();
+  }
+}
+
+void Discovery::ask(std::set<std::string> nodes) {
+  while (nodes.size() > kMostAsked) {
+    nodes.erase(std::prev(nodes.end()));
+  }
+  {
+    const auto shared = shared_.lock();
+    shared->to_ask = std::move(nodes);
+    shared->hanging.reset();
+    shared->poll_now = true;
+  }
+  wake_.notify_all();
+}
+
+void Discovery::askNodes() {
+  const std::set<std::string> nodes = std::exchange(shared_.lock()->to_ask, {});
+  if (!nodes.empty()) {
+    std::set<std::string> hanging =
+        ros1::hangingNodes(ros1::fetchAddresses(nodes), kPatienceOfNode);
+    const auto shared = shared_.lock();
+    if (shared->to_ask.empty()) {  // else others are asked already
+      shared->hanging = std::move(hanging);
+    }
   }
 }
 

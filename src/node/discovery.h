@@ -30,6 +30,8 @@ class Discovery {
  public:
   /// Most topics that are subscribed to besides those of the model: each takes memory and files.
   static constexpr std::size_t kMostOthers = 2000;
+  /// Each of those that are asked may have to be waited for.
+  static constexpr std::size_t kMostAsked = 20;
 
   /// What the subscriptions are chosen by.
   struct Wanted {
@@ -59,6 +61,10 @@ class Discovery {
 
   /// Polls at once with what is wanted from now on.
   void setWanted(Wanted wanted);
+  /// Has up to kMostAsked nodes asked once whether they answer, after the next poll, which is now.
+  void ask(std::set<std::string> nodes);
+  /// Who of them did not (ros1::hangingNodes()); none: they are still asked.
+  std::optional<std::set<std::string>> hanging() const { return shared_.lock()->hanging; }
   State state() const;
   /// Publishers that the master names, and that are not heard.
   std::vector<ros1::Unheard> unheard() const { return subscriptions_.unheard(); }
@@ -69,6 +75,8 @@ class Discovery {
     State state;
     /// While the master is asked: since when.
     std::optional<std::chrono::steady_clock::time_point> asked_at;
+    std::set<std::string> to_ask;
+    std::optional<std::set<std::string>> hanging;  ///< of those that were asked
     bool poll_now = true;
     bool stopping = false;
   };
@@ -77,6 +85,8 @@ class Discovery {
   /// Waits until it is time to poll; none: the thread must end.
   std::optional<Wanted> awaitPoll();
   void poll(const Wanted& wanted);
+  /// Asks whom somebody wants asked.
+  void askNodes();
   /// Brings what is listened to up to date, and says how much it is, and on which computers it is
   /// sent.
   void listen(const Wanted& wanted, ros1::SystemState& known, bool master_restarted, State& state);

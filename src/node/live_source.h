@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clock_contest.h"
@@ -100,6 +101,8 @@ class LiveSource {
   void setWanted(Wanted wanted);
   /// Turns what has arrived into events.
   void deliver() { live_events_.deliver(); }
+  /// Has nodes asked, as Discovery::ask().
+  void ask(std::set<std::string> nodes) { discovery_.ask(std::move(nodes)); }
   /// Has the listener report now; the next time is a period later.
   void report();
 

@@ -2,23 +2,16 @@
 """What an operator accepts is normal from now on, for other starts, too."""
 
 import os
-from typing import Any
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import MonitorListener, again_if_disturbed, await_condition, talker
-from monitor_case import TrainedCase, subscribers
+from monitor_case import TrainedCase, accept, subscribers
 from self_awareness.msg import SelfAwareness
-from self_awareness.srv import Accept, AcceptResponse
 
 NODE = '/self_awareness'
-
-
-def accept(**what: Any) -> AcceptResponse:
-    rospy.wait_for_service(NODE + '/accept', 20)
-    return rospy.ServiceProxy(NODE + '/accept', Accept)(**what)
 
 
 class AcceptTest(TrainedCase):

@@ -14,6 +14,7 @@ from std_srvs.srv import Trigger, TriggerResponse
 
 import self_awareness
 from live_system import Process, operation, ours, run_program, write_bag
+from self_awareness.srv import Accept, AcceptResponse
 
 
 class Talker:
@@ -51,6 +52,11 @@ def publishers(topic: str) -> List[str]:
 
 def subscribers(topic: str) -> List[str]:
     return dict(rosgraph.Master(rospy.get_name()).getSystemState()[1]).get(topic, [])
+
+
+def accept(**what: Any) -> AcceptResponse:
+    rospy.wait_for_service('/self_awareness/accept', 20)
+    return rospy.ServiceProxy('/self_awareness/accept', Accept)(**what)
 
 
 def forget_parameters() -> None:

@@ -37,16 +37,21 @@ void blame(const Suspect& suspect, Alarm& alarm) {
   alarm.kind = suspect.reason.kind;
 }
 
-/// Takes in that a culprit has an excuse, or that who is dead has none any more. Who is to blame
-/// is settled when an alarm is raised, and changes for nothing else.
+/// Takes in that a culprit has an excuse, that who is dead has none any more, or that somebody was
+/// missed before the culprit was. Who is to blame is settled when an alarm is raised, and changes
+/// for nothing else.
 void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Alarm& alarm) {
   const bool was_busy = alarm.kind == Kind::kBusyMachine;
-  const bool absent =
-      !suspects.empty() && suspects.front().abnormal && isAbsence(suspects.front().reason.kind);
-  if (was_busy && !verdict.busy && absent) {  // a machine that is busy no more is not to blame
-    blame(suspects.front(), alarm);
+  const bool is_excused_no_more =
+      (was_busy && !verdict.busy) || (alarm.kind == Kind::kNewMode && !verdict.silent);
+  const Suspect* culprit = alarm.suspectToBlame();
+  if (!suspects.empty() && suspects.front().abnormal && isAbsence(suspects.front().reason.kind)) {
+    const std::int64_t missed = suspects.front().missed;
+    if (is_excused_no_more || (culprit != nullptr && missed > 0 && missed < culprit->onset)) {
+      blame(suspects.front(), alarm);
+      culprit = alarm.suspectToBlame();
+    }
   }
-  const Suspect* const culprit = alarm.suspectToBlame();
   const bool is_named = std::any_of(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
     return suspect.component == alarm.culprit;
   });
@@ -172,13 +177,16 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
       (!alarm.silent || verdict.silent->components.size() > alarm.silent->components.size())) {
     alarm.silent = verdict.silent;
   }
+  const std::vector<Suspect> later = withComponents(verdict.new_suspects, vocabulary);
+  alarm.later.insert(alarm.later.end(), later.begin(), later.end());
   if (stands) {
     findCause(verdict, suspects, alarm);
   }
+  if (!verdict.note.empty()) {
+    alarm.note = verdict.note;
+  }
   alarm.end = end;
   alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));
-  const std::vector<Suspect> later = withComponents(verdict.new_suspects, vocabulary);
-  alarm.later.insert(alarm.later.end(), later.begin(), later.end());
 }
 
 }  // namespace self_awareness::core

@@ -8,9 +8,9 @@ import numpy as np
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families.kinds import FAMILIES
-from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LONGEST_START_S,
-                                                      MISSES, RESTART, SILENT, STARVED, Fault,
-                                                      Robot)
+from self_awareness_evaluation.families.robot import (AFTER_CRASH, CRASH, HALF_RATE, LATE,
+                                                      LONGEST_START_S, MISSES, RESTART, SILENT,
+                                                      STARVED, STOP, Fault, Robot)
 from self_awareness_evaluation.records import FaultRecord, Learning
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
@@ -20,7 +20,7 @@ DEATH = 'death'
 SELDOM = 'seldom'
 """The crash of a component that speaks when something happens, and answers to nobody."""
 
-KINDS = (CRASH, HALF_RATE, LATE, DEATH, MISSES, STARVED, SILENT, SELDOM, RESTART)
+KINDS = (CRASH, HALF_RATE, LATE, DEATH, MISSES, STARVED, SILENT, SELDOM, RESTART, *AFTER_CRASH)
 """Kinds of faults as they are told apart in the results."""
 
 WATCHED_S = 1800.0
@@ -37,6 +37,9 @@ RESTARTS_IN_S, AFTER_RESTART_S = 10.0, 180.0
 
 _ONSET_S = 60.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
+
+_FOLLOWS_S = 1.0  # so long after the first message is missing, something else follows a crash
+_STOP_TOGETHER = 3
 
 _PAUSES = 3.0  # a recording goes on for so many of its longest pauses after who speaks seldom died
 _PAUSES_FROM_S = 3600.0  # the longest pause is that of so long a time
@@ -136,7 +139,9 @@ class Records:
                LATE: [source for source in regular if source in answering],
                DEATH: [source for source in answering if source not in regular],
                MISSES: [source for source in regular if source in answering],
-               STARVED: [''], SILENT: [''], SELDOM: self.robot.seldom, RESTART: regular}
+               STARVED: [''], SILENT: [''], SELDOM: self.robot.seldom, RESTART: regular,
+               **{kind: regular[first::len(AFTER_CRASH)]
+                  for first, kind in enumerate(AFTER_CRASH)}}
         number = 0
         for kind in KINDS:
             chosen = _spread(len(who[kind]), most) if kind in kinds else set()
@@ -148,21 +153,28 @@ class Records:
 
     def _fault(self, kind: str, source: str, number: int,
                after_s: float) -> Iterator[FaultRecord]:
-        """Yield the recording with a fault; none if nothing is missing after a death."""
+        """Yield the recording with a fault; none if nothing is missing after a crash for which
+        that decides."""
         spread = np.random.default_rng((self.robot.seed, number)).uniform(0.0, _ONSET_SPREAD_S)
         onset_s = _ONSET_S + float(spread)
         seconds = onset_s + after_s
         fault = Fault(CRASH if kind in (DEATH, SELDOM) else kind, source, onset_s,
                       onset_s + RESTARTS_IN_S if kind == RESTART else LONGEST_START_S)
         same_start = self._family.watched_start
-        recording = self._recorded(_FAULTS, number, seconds, same_start, fault)
-        onset = recording.end - nanoseconds(seconds) + nanoseconds(onset_s)
-        if kind == DEATH:
-            stamps = _stamps(self._recorded(_FAULTS, number, seconds, same_start), source)
-            missing = stamps[stamps >= onset]
-            if not len(missing) or missing[0] + nanoseconds(_MISSING_S) > recording.end:
+        if kind in (DEATH, *AFTER_CRASH):
+            healthy = self._recorded(_FAULTS, number, seconds, same_start)
+            begin = healthy.end - nanoseconds(seconds)
+            sent = _stamps(healthy, source)
+            missing = sent[sent >= begin + nanoseconds(onset_s)]
+            if not len(missing) or (kind == DEATH
+                                    and missing[0] + nanoseconds(_MISSING_S) > healthy.end):
                 return
-            onset = int(missing[0])
+            others = self.robot.strangers_of(source, _STOP_TOGETHER) if kind == STOP else ()
+            fault = replace(fault, others=others,
+                            follows_s=(int(missing[0]) - begin) / SECOND_NS + _FOLLOWS_S)
+        recording = self._recorded(_FAULTS, number, seconds, same_start, fault)
+        onset = (int(missing[0]) if kind == DEATH
+                 else recording.end - nanoseconds(seconds) + nanoseconds(onset_s))
         yield FaultRecord(kind, (source,) if source else (), recording, onset,
                           onset + nanoseconds(RESTARTS_IN_S) if kind == RESTART else None)
 

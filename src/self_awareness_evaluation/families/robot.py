@@ -18,6 +18,11 @@ CRASH, HALF_RATE, LATE, MISSES, RESTART = ('crash', 'half rate', 'late 60 ms', '
                                            'restart')
 """The kinds of faults of one component."""
 
+STALL, LOAD, STOP = 'stall after a crash', 'load after a crash', 'stop after a crash'
+"""Crashes that something else follows, which must not hide them."""
+
+AFTER_CRASH = (STALL, LOAD, STOP)
+
 STARVED, SILENT = 'starved CPU', 'everything silent'
 """The kinds of faults of the whole robot."""
 
@@ -27,6 +32,7 @@ _MISSED_S = 1.0  # what asks in this time is not answered
 _BETWEEN_MISSES_S = 5.0  # mean time until it happens again
 _STARVED_S = 0.15  # mean time that a message waits when the CPU is starved fully
 _GROWS_S = 20.0  # until it is
+_LASTS_S = 2.0  # what follows a crash
 
 LONGEST_START_S = 90_000.0
 """A start of the robot lasts no longer than this [s]."""
@@ -43,7 +49,9 @@ class Fault:
     """A fault of one component, or of the whole robot.
 
     Args:
-        kind: CRASH: it is silent. RESTART: it is silent, too; after the relief its timers have
+        kind: CRASH: it is silent. STALL: it is, and later the host stands still for 2 s. LOAD:
+            instead, all messages wait for 2 s. STOP: instead, others that do not hear it or each
+            other are silent, too. RESTART: it is silent, too; after the relief its timers have
             other phases. HALF_RATE: it leaves out every second message. LATE: its answers to
             others come LATE_S later. MISSES: it answers nothing for a second, now and then.
             What answers to it suffers as it would. STARVED: all messages wait, longer and longer
@@ -51,12 +59,16 @@ class Fault:
         source: the component; empty: the robot.
         onset_s: from the beginning of the recording [s].
         relief_s: from there on all is well again [s].
+        follows_s: of STALL, LOAD and STOP, when what follows the crash begins [s].
+        others: of STOP, the components that are silent then.
     """
 
     kind: str
     source: str
     onset_s: float
     relief_s: float = LONGEST_START_S
+    follows_s: float = LONGEST_START_S
+    others: Tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -136,6 +148,18 @@ class Robot:
         """The components that answer to another one."""
         return _distinct(output.source for output in self.outputs if self._answers_others(output))
 
+    def strangers_of(self, source: str, most: int) -> Tuple[str, ...]:
+        """Return regular components that need neither a component nor each other, and which they
+        do not need."""
+        graph = self.graph
+        chosen = [source]
+        for other in self.regular:
+            needing = _needing(other, graph)
+            if len(chosen) <= most and not any(each in needing or other in _needing(each, graph)
+                                               for each in chosen):
+                chosen.append(other)
+        return tuple(chosen[1:])
+
     def in_mode(self, on: bool) -> Robot:
         """Return the robot in all of its activities, for ever, or in none of them."""
         mode = Activity(_FOR_EVER_S, 0.0) if on else Activity(0.0, _FOR_EVER_S)
@@ -165,6 +189,8 @@ class Robot:
             self._check(fault)
         scene = Scene(self.seed, start_seed, begin_s, begin_s + seconds, self.conditions,
                       self.activities)
+        if fault is not None and fault.kind == STALL:
+            scene.stall(begin_s + fault.follows_s, _LASTS_S)
         for index in range(len(self.outputs)):
             scene.published.append(self._published(scene, index, fault, begin_s))
         recorded = [self._heard(scene, index, _RECORDER) for index in range(len(self.outputs))]
@@ -179,7 +205,8 @@ class Robot:
 
     def _check(self, fault: Fault) -> None:
         of_robot = fault.kind in (STARVED, SILENT)
-        if not of_robot and fault.kind not in (CRASH, HALF_RATE, LATE, MISSES, RESTART):
+        if not of_robot and fault.kind not in (CRASH, HALF_RATE, LATE, MISSES, RESTART,
+                                                   *AFTER_CRASH):
             raise ValueError(f'{fault.kind}: no such kind of fault')
         if fault.source not in ({''} if of_robot else {output.source for output in self.outputs}):
             raise ValueError(f'{fault.source}: no such component')
@@ -199,18 +226,24 @@ class Robot:
                                       lambda heard: self._heard(scene, heard, output.source)[0])
         times = stalled(self.conditions.hiccup(times, scene.of_recording(f'hiccup {index}')),
                         scene)
-        if fault is None or fault.source not in ('', output.source):
+        if fault is None:
+            return times
+        if output.source in fault.others:
+            return times[times < begin_s + fault.follows_s]
+        if fault.kind == LOAD and fault.source != output.source:
+            since = times - begin_s - fault.follows_s
+            return _waited(times, (since >= 0) & (since < _LASTS_S), scene, index)
+        if fault.source not in ('', output.source):
             return times
         hit = ((times >= begin_s + fault.onset_s) & (times < begin_s + fault.relief_s))
-        if fault.kind in (CRASH, SILENT):
+        if fault.kind in (CRASH, SILENT, *AFTER_CRASH):
             return times[~hit]
         if fault.kind == RESTART:
             shift = (_new_phase(times, scene, index) if output.emission.trigger is None else 0.0)
             return times[~hit] + shift * (times[~hit] >= begin_s + fault.relief_s)
         if fault.kind == STARVED:
             grown = np.clip((times - begin_s - fault.onset_s) / _GROWS_S, 0.0, 1.0) * hit
-            waits = scene.of_recording(f'starved {index}').exponential(_STARVED_S, len(times))
-            return in_order(times + waits * grown)
+            return _waited(times, grown, scene, index)
         if fault.kind == MISSES:
             if not self._answers_others(output):
                 return times
@@ -253,6 +286,16 @@ class Robot:
                 [each[those] for each, those in zip(attributes, kept)])[order])
 
 
+def _needing(source: str, graph: Set[Tuple[str, str, str]]) -> Set[str]:
+    """Return a component, and those that its messages reach, whoever passes them on."""
+    reached = {source}
+    while True:
+        further = {edge[2] for edge in graph if edge[0] in reached} - reached
+        if not further:
+            return reached
+        reached |= further
+
+
 def _missed(times: np.ndarray, scene: Scene, fault: Fault) -> np.ndarray:
     """Return which times lie in those in which a component misses its inputs."""
     rng = scene.of_recording(f'missed {fault.source}')
@@ -260,6 +303,12 @@ def _missed(times: np.ndarray, scene: Scene, fault: Fault) -> np.ndarray:
     edges = scene.begin + np.cumsum(np.column_stack(
         [rng.exponential(_BETWEEN_MISSES_S, number), np.full(number, _MISSED_S)]).ravel())
     return np.searchsorted(edges, times, side='right') % 2 == 1
+
+
+def _waited(times: np.ndarray, load: np.ndarray, scene: Scene, index: int) -> np.ndarray:
+    """Return when an output sends on a CPU that is starved, by the load at its times, 0 to 1."""
+    waits = scene.of_recording(f'starved {index}').exponential(_STARVED_S, len(times))
+    return in_order(times + waits * load)
 
 
 def _new_phase(times: np.ndarray, scene: Scene, index: int) -> float:

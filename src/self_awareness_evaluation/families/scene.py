@@ -47,6 +47,7 @@ class Scene:
         self._recording = round(begin * 1e3)
         self._edges = {name: activity.edges(self.begin, self.end, self.of_recording(name))
                        for name, activity in activities.items()}
+        self._stalls = conditions.stalls(self.begin, end, self.of_recording('stalls'))
         self._day_phase = self.of_start('time of day').uniform(0.0, 1.0)
 
     def of_start(self, purpose: str) -> np.random.Generator:
@@ -70,4 +71,10 @@ class Scene:
 
     def stalls(self) -> Tuple[np.ndarray, np.ndarray]:
         """Return when the host stalls in the recording, and for how long [s]."""
-        return self.conditions.stalls(self.begin, self.end, self.of_recording('stalls'))
+        return self._stalls
+
+    def stall(self, begin: float, length: float) -> None:
+        """Let the host stall once more [s], before anything was published."""
+        begins, lengths = self._stalls
+        place = np.searchsorted(begins, begin)
+        self._stalls = (np.insert(begins, place, begin), np.insert(lengths, place, length))

@@ -5,8 +5,8 @@ from typing import Dict, List, Sequence
 
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import DEATH, KINDS, SELDOM
-from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, RESTART,
-                                                      SILENT, STARVED)
+from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LOAD, MISSES,
+                                                      RESTART, SILENT, STALL, STARVED, STOP)
 from self_awareness_evaluation.figures import WITHIN_S, Found, Quiet, grouped, normal, of_fault
 from self_awareness_evaluation.robots import family_of
 from self_awareness_evaluation.rows import Row
@@ -23,7 +23,9 @@ ALL = 'all'
 TITLES: Dict[str, str] = {
     CRASH: 'crashes', HALF_RATE: 'half rate', LATE: 'late answers', DEATH: 'deaths when asked',
     SELDOM: 'deaths of who speaks seldom', MISSES: 'inputs missed now and then',
-    STARVED: 'starved CPU', SILENT: 'everything silent', RESTART: 'restarts'}
+    STARVED: 'starved CPU', SILENT: 'everything silent', RESTART: 'restarts',
+    STALL: 'a stall follows a crash', LOAD: 'load follows a crash',
+    STOP: 'others stop after a crash'}
 """Kinds of faults as tables call them."""
 
 _MOST_SOURCES = 2

@@ -25,6 +25,19 @@ class AlarmsTest : public testing::Test {
     suspect.reason.kind = kind;
     return suspect;
   }
+  /// One that alone is abnormal.
+  static Suspect missing(EventId id) {
+    Suspect missing = suspect(id, Kind::kSilent);
+    missing.abnormal = true;
+    return missing;
+  }
+  /// One that came last at a moment [ns], and usually does within a window.
+  static Suspect silentSince(EventId id, std::int64_t onset) {
+    Suspect silent = missing(id);
+    silent.onset = onset;
+    silent.missed = onset + kWindow;
+    return silent;
+  }
   /// The verdict on the next window; an abnormal one blames suspects.
   Verdict verdict(Level level, const std::vector<Suspect>& suspects = {}) {
     Verdict verdict;
@@ -243,6 +256,27 @@ TEST_F(AlarmsTest, WhereNobodyStandsOutThereIsNoCulprit) {
   EXPECT_EQ(alarms_.standing()->reason, "");
   EXPECT_EQ(alarms_.standing()->kind, Kind::kOutOfOrder);
   EXPECT_EQ(alarms_.standing()->evidence, "score");
+}
+
+TEST_F(AlarmsTest, WhoWasMissedBeforeTheCulpritFailedIsToBlame) {
+  const std::int64_t failed = kStart - kWindow;
+  add(verdict(kAlarm, {silentSince(0, failed)}));
+  add(verdict(kAlarm, {silentSince(1, failed - kWindow / 2), silentSince(0, failed)}));
+  expectBlamed("/a", Kind::kSilent);  // the other one was not missed before
+  add(verdict(kAlarm, {silentSince(0, failed), silentSince(1, failed - 2 * kWindow)}));
+  expectBlamed("/a", Kind::kSilent);  // nor is it first
+  add(verdict(kAlarm, {silentSince(1, failed - 2 * kWindow), silentSince(0, failed)}));
+  expectBlamed("/b", Kind::kSilent);
+}
+
+TEST_F(AlarmsTest, ANewModeThatIsOverDoesNotHideWhoIsStillSilent) {
+  add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
+  addSilent({{}, {"/a", "/b"}, kStart, true});
+  expectBlamed("", Kind::kNewMode);
+  add(verdict(kAlarm, {suspect(1, Kind::kSlow)}));
+  expectBlamed("", Kind::kNewMode);  // who is back is unusual for a while
+  add(verdict(kAlarm, {missing(1)}));
+  expectBlamed("/b", Kind::kSilent);
 }
 
 TEST_F(AlarmsTest, MayBeEndedByHand) {

@@ -11,8 +11,9 @@ from self_awareness_evaluation.families.conditions import Conditions
 from self_awareness_evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
 from self_awareness_evaluation.families.kinds import DEFAULT, FAMILIES, draw
 from self_awareness_evaluation.families.protocol import DEATH, RESTARTS_IN_S, SELDOM, Records
-from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, RESTART,
-                                                      SILENT, STARVED, Fault, Output, Robot)
+from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LOAD, MISSES,
+                                                      RESTART, SILENT, STALL, STARVED, STOP, Fault,
+                                                      Output, Robot)
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
@@ -201,6 +202,32 @@ def test_messages_wait_longer_and_longer_on_a_starved_cpu() -> None:
     by_10_s = [part.mean() for part in np.array_split(late, 6)]
     assert by_10_s[0] == by_10_s[1] == 0.0 < by_10_s[2] < by_10_s[3] < by_10_s[4]
     assert 0.1 < by_10_s[5] < 0.5
+
+
+@pytest.mark.parametrize('kind', [STALL, LOAD, STOP])
+def test_something_else_follows_a_crash(kind: str) -> None:
+    others = ('/battery',) if kind == STOP else ()
+    normal, hit = (stamps(small(jitter_s=0.0).start(1, 60.0, fault)) for fault in (
+        None, Fault(kind, '/filter', 20.0, follows_s=30.0, others=others)))
+    begin = normal['/scan'][0]
+    assert (hit['/map'] < begin + 20.0).all()
+    assert np.array_equal(*(times['/charge'][times['/charge'] < begin + 29.0]
+                            for times in (normal, hit)))
+    later = hit['/charge'][hit['/charge'] >= begin + 30.0]
+    if kind == STOP:
+        assert not len(later)
+        return
+    late = hit['/scan'] - normal['/scan']
+    while_it_lasts = (normal['/scan'] > begin + 30.0) & (normal['/scan'] < begin + 32.0)
+    assert late[while_it_lasts].mean() > 0.05
+    assert late[normal['/scan'] > begin + 33.0].max() < 0.001
+    assert (kind == STALL) == (later[0] > begin + 31.9)
+
+
+def test_who_is_hit_later_needs_nobody_who_was_hit() -> None:
+    assert small().strangers_of('/battery', 3) == ('/driver',)
+    assert small().strangers_of('/filter', 3) == ('/battery',)
+    assert small().strangers_of('/planner', 3) == ()
 
 
 def test_who_speaks_seldom_is_watched_for_three_of_its_longest_pauses() -> None:

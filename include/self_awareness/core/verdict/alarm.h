@@ -32,6 +32,7 @@ struct Alarm {
   std::string culprit;        ///< component; empty: there is none, or nobody stands out
   /// Why the culprit is one, in words; without a culprit: who is silent, or empty.
   std::string reason;
+  std::string note;  ///< what was found out about the culprit since, in words; empty: nothing
   /// What raised it, in words; empty: a suspicion that an alarm left, so far. That is about the
   /// same component as the alarm, until something else is abnormal.
   std::string evidence;

@@ -44,7 +44,7 @@ StoppedTogether::Found StoppedTogether::excuse(
                    [](const Excess& excess) { return excess.share > 1; })) {
     return found;
   }
-  const Window window{limits, scorer.heard(), excesses};
+  const Window window{limitsOfSilence(limits), scorer.heard(), excesses};
   found.silent = everything(window, strangers);
   if (found.silent) {
     for (Excess& excess : excesses) {
@@ -55,7 +55,6 @@ StoppedTogether::Found StoppedTogether::excuse(
         excess.excuse = Excuse::kAllSilent;
       }
     }
-    return found;
   }
   if (upstream_->empty()) {
     return found;
@@ -66,6 +65,9 @@ StoppedTogether::Found StoppedTogether::excuse(
   const std::vector<std::string> names = namesOf(componentsOf(ids));
   if (!stopped.empty() && !accepted_.coversMode(names)) {
     cover(ids, Excuse::kNewMode, kEver, window);
+    if (found.silent) {  // what was there before all fell silent
+      return found;
+    }
     Silent& mode = found.silent.emplace();
     mode.others_go_on = true;
     mode.components = names;
@@ -95,6 +97,16 @@ void StoppedTogether::accept(const Acceptances& accepted) {
 
 void StoppedTogether::restart() {
   std::fill(excused_until_.begin(), excused_until_.end(), 0);
+}
+
+std::vector<double> StoppedTogether::limitsOfSilence(const Limits& limits) const {
+  std::vector<double> of_silence(model_->size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
+    if (model_->finding(track) == Finding::kSilent) {
+      of_silence[model_->tracks()[track].to] = limits.tracks[track];
+    }
+  }
+  return of_silence;
 }
 
 bool StoppedTogether::isRare(EventId id, std::int64_t silence) const {
@@ -202,10 +214,8 @@ std::vector<StoppedTogether::Component> StoppedTogether::look(const Window& wind
       component.seen = true;
     }
   }
-  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
-    const EventId id = model_->tracks()[track].to;
-    if (model_->finding(track) != Finding::kSilent || std::isnan(window.limits.tracks[track]) ||
-        !window.heard.hasSeen(id)) {
+  for (EventId id = 0; id < model_->size(); ++id) {
+    if (std::isnan(window.limits[id]) || !window.heard.hasSeen(id)) {
       continue;
     }
     Component& component = components[model_->componentIndex(id)];
@@ -232,10 +242,9 @@ StoppedTogether::Ids StoppedTogether::silent(const Window& window,
     }
   }
   Ids silent;
-  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
-    const EventId id = model_->tracks()[track].to;
-    if (model_->finding(track) == Finding::kSilent && !std::isnan(window.limits.tracks[track]) &&
-        !owes[id] && window.heard.hasSeen(id) && isRare(id, window.heard.listenedFor(id))) {
+  for (EventId id = 0; id < model_->size(); ++id) {
+    if (!std::isnan(window.limits[id]) && !owes[id] && window.heard.hasSeen(id) &&
+        isRare(id, window.heard.listenedFor(id))) {
       silent.push_back(id);
     }
   }
@@ -245,19 +254,13 @@ StoppedTogether::Ids StoppedTogether::silent(const Window& window,
 std::set<EventId> StoppedTogether::stopped(const Ids& silent, const Window& window) {
   const std::int64_t now = window.heard.windowEnd();
   std::set<EventId> stopped;
-  std::map<Ids, bool> answers;  // most stop with the same ones
-  for (const Excess& excess : window.excesses) {
-    const EventId id = trackOf(excess).to;
-    const Finding finding = model_->finding(excess.track);
-    if (excess.share <= 1 || !window.heard.hasSeen(id) || stopped.count(id) > 0 ||
-        (finding != Finding::kSilent && finding != Finding::kAbsent)) {
-      continue;
-    }
-    const Ids with_it = stoppedWith(id, silent, window.heard);
-    const auto [answer, is_new] = answers.try_emplace(with_it, false);
-    if (is_new && areUnrelated(with_it, window.heard) && othersGoOn(with_it, window.heard)) {
-      answer->second = true;
-      stopped.insert(with_it.begin(), with_it.end());
+  for (Ids& group : groups(silent, window)) {
+    // Who stopped with many did not stop with few, too.
+    group.erase(std::remove_if(group.begin(), group.end(),
+                               [&](EventId id) { return stopped.count(id) > 0; }),
+                group.end());
+    if (areUnrelated(group, window.heard) && othersGoOn(group, window.heard)) {
+      stopped.insert(group.begin(), group.end());
     }
   }
   // They do not come back all at once.
@@ -271,17 +274,43 @@ std::set<EventId> StoppedTogether::stopped(const Ids& silent, const Window& wind
   return stopped;
 }
 
+std::vector<StoppedTogether::Ids> StoppedTogether::groups(const Ids& silent,
+                                                          const Window& window) const {
+  std::set<Ids> groups;  // most stop with the same ones
+  std::set<EventId> seen;
+  for (const Excess& excess : window.excesses) {
+    const EventId id = trackOf(excess).to;
+    const Finding finding = model_->finding(excess.track);
+    if (excess.share > 1 && window.heard.hasSeen(id) &&
+        (finding == Finding::kSilent || finding == Finding::kAbsent) && seen.insert(id).second) {
+      groups.insert(stoppedWith(id, silent, window));
+    }
+  }
+  std::vector<Ids> ordered(groups.begin(), groups.end());
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const Ids& a, const Ids& b) { return a.size() > b.size(); });
+  return ordered;
+}
+
 StoppedTogether::Ids StoppedTogether::stoppedWith(EventId id, const Ids& silent,
-                                                  const Heard& heard) const {
-  const auto stopped = static_cast<double>(*heard.lastSeen(id));
+                                                  const Window& window) const {
+  const auto stamps = window.heard.stamps();
+  const auto wasMissed = [&](EventId first, std::int64_t later) {
+    return model_->overdue(first, later - stamps[first]) > window.limits[first];
+  };
   Ids together;
   for (const EventId other : silent) {
-    const double earlier = stopped - static_cast<double>(*heard.lastSeen(other));
-    const double usual = model_->meanGap(earlier > 0 ? other : id);
-    if (std::abs(earlier) <= static_cast<double>(kRateSpan) + usual) {
+    const EventId first = stamps[other] < stamps[id] ? other : id;
+    const std::int64_t apart = std::abs(stamps[other] - stamps[id]);
+    if (apart <= kRateSpan + static_cast<std::int64_t>(model_->meanGap(first)) &&
+        !wasMissed(first, stamps[first] + apart)) {
       together.push_back(other);
     }
   }
+  const std::int64_t last = lastOf(together, window.heard);
+  together.erase(std::remove_if(together.begin(), together.end(),
+                                [&](EventId other) { return wasMissed(other, last); }),
+                 together.end());
   return together;
 }
 

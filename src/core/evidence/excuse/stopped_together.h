@@ -65,11 +65,12 @@ class StoppedTogether {
     void add(std::size_t index, const Component& component);
   };
   struct Window {
-    const Limits& limits;
+    std::vector<double> limits;  // of silence, by id; NaN: it is not judged
     const Heard& heard;
     std::vector<Excess>& excesses;
   };
 
+  std::vector<double> limitsOfSilence(const Limits& limits) const;
   const Track& trackOf(const Excess& excess) const { return model_->tracks()[excess.track]; }
   /// Whether an event type has been silent for longer than is usual.
   bool isRare(EventId id, std::int64_t silence) const;
@@ -89,8 +90,10 @@ class StoppedTogether {
   Ids silent(const Window& window, const std::vector<bool>& may_be_silent) const;
   /// Those of the silent ones that stopped as in a new mode, or did so and are not back yet.
   std::set<EventId> stopped(const Ids& silent, const Window& window);
-  /// Those of them that stopped when this one did.
-  Ids stoppedWith(EventId id, const Ids& silent, const Heard& heard) const;
+  /// Those of them that stopped when this one did: none was missed when the other one came last.
+  Ids stoppedWith(EventId id, const Ids& silent, const Window& window) const;
+  /// What stopped together, for each that is beyond its limit; most at once come first.
+  std::vector<Ids> groups(const Ids& silent, const Window& window) const;
   /// Whether they are of enough components that are victims of nobody.
   bool areUnrelated(const Ids& ids, const Heard& heard) const;
   /// Whether somebody was heard for most of the time since they were: or all are silent.

@@ -98,6 +98,7 @@ std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
     if (suspects.size() < kMostSuspects || each.abnormal) {
       Suspect suspect = suspectOf(*each.main, window);
       suspect.abnormal = each.abnormal;
+      suspect.missed = each.wrong == Wrong::kAbsent ? each.latest : 0;
       if (each.alive && suspect.reason.kind == Kind::kSilent) {
         suspect.reason.kind =
             suspect.reason.after.empty() ? Kind::kTopicSilent : Kind::kUnanswered;
@@ -254,9 +255,11 @@ std::vector<Explanation::Accused> Explanation::rootFirst(const std::vector<Accus
 bool Explanation::isRoot(const Accused& root, const Accused& victim, const Leads& leads) const {
   const std::size_t from = root.component;
   const std::size_t to = victim.component;
-  // Who fell silent only when the other one should have come is not why it did not.
+  // Who fell silent only when the other one should have come is not why it did not; nor is who is
+  // hardly silent, and should have come when the other one was missed already.
   const bool too_late = root.wrong == Wrong::kAbsent && victim.wrong == Wrong::kAbsent &&
-                        root.main->onset > (root.sure ? victim.latest : victim.due);
+                        (root.sure ? root.main->onset > victim.latest
+                                   : root.main->onset > victim.due || root.due > victim.latest);
   return !too_late && (upstream_->isUpstream(from, to) ||
                        (leads.count({from, to}) > 0 && !upstream_->isUpstream(to, from)));
 }

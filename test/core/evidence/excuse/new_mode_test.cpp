@@ -92,12 +92,20 @@ class NewModeTest : public testing::Test {
 };
 
 TEST_F(NewModeTest, NobodyIsToBlameWhereFourThatDoNotHearEachOtherStopTogether) {
-  const std::optional<Silent> silent = excuse({kAgo, kAgo, kAgo + kSecond, kAgo, 0, 0});
+  const std::optional<Silent> silent = excuse({kAgo, kAgo, kAgo + kSecond / 50, kAgo, 0, 0});
   ASSERT_TRUE(silent);
   EXPECT_TRUE(silent->others_go_on);
   EXPECT_EQ(silent->components, (Strings{"/arm", "/laser", "/lidar", "/wheels"}));
   EXPECT_EQ(silent->since, kEnd - kAgo);
   EXPECT_EQ(shares_, std::vector<double>(shares_.size(), 0));
+}
+
+TEST_F(NewModeTest, WhoWasMissedWhenTheOthersCameLastDiedBeforeThem) {
+  const std::optional<Silent> silent = excuse({kAgo, kAgo, kAgo + kSecond, kAgo, 0, kAgo});
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->components, (Strings{"/imu", "/laser", "/lidar", "/wheels"}));
+  EXPECT_EQ(share(2), 2) << "a mode does not hide a death";
+  EXPECT_EQ(share(0), 0);
 }
 
 TEST_F(NewModeTest, ThreeAreFaults) {
@@ -123,6 +131,14 @@ TEST_F(NewModeTest, WhoMayBeSilentIsNoneOfTheFour) {
 TEST_F(NewModeTest, WhoFellSilentBeforeIsNotExcusedThoughItHearsThem) {
   EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, 2 * kAgo, 0}));
   EXPECT_EQ(share(kSlam), 2);
+}
+
+TEST_F(NewModeTest, WhatWasAModeBeforeAllFellSilentStaysOne) {
+  const std::optional<Silent> silent = excuse({kAgo, kAgo, kAgo, kAgo, 5 * kSecond, 5 * kSecond});
+  ASSERT_TRUE(silent);
+  EXPECT_FALSE(silent->others_go_on);
+  EXPECT_EQ(silent->components, (Strings{"/imu", "/slam"}));
+  EXPECT_EQ(share(0), 0) << "nor is who stopped before to blame";
 }
 
 TEST_F(NewModeTest, TheGraphMayGrow) {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+
+#include "host.h"
+#include "part.h"
+#include "self_awareness/core/stream/event.h"
+
+namespace self_awareness {
+
+/// Tells who is silent since a subscriber of it hangs: a rospy node without a queue_size waits in
+/// publish() until all have read. Once in an alarm, its node and the subscribers are asked.
+class BlockedNode : public Part {
+ public:
+  /// Has these nodes asked (Discovery::ask()).
+  using Ask = std::function<void(std::set<std::string> nodes)>;
+
+  BlockedNode(Host& host, Ask ask);
+
+  void onVerdict(core::Verdict& verdict, ros1::Circumstances& circumstances) override;
+
+ private:
+  enum class Step { kNone, kAsked, kTold };
+
+  /// Has who sends an event type asked, and all who listen to it.
+  void ask(const core::EventType& type);
+  /// What the answers say; empty: nothing that explains a silence.
+  std::string inWords(const std::set<std::string>& hanging) const;
+
+  Host& host_;
+  const Ask ask_;
+  Step step_ = Step::kNone;
+  std::set<std::string> publishers_;
+  std::set<std::string> subscribers_;
+};
+
+}  // namespace self_awareness
