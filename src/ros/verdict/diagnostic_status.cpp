@@ -224,19 +224,21 @@ void tellComponent(const CommunicationState& state, const std::string& name,
   const HeardReport::Component& component = state.heard.components.at(name);
   status.summary(DiagnosticStatus::OK, component.last_heard ? "heard" : "not heard yet");
   const std::vector<self_awareness::Suspect>& suspects = state.last.suspects;
-  for (std::size_t i = 0; i < suspects.size() && state.last.level != DiagnosticStatus::OK; ++i) {
-    if (core::componentOf(suspects[i].source, suspects[i].scope) == name) {
-      // The most likely one is to blame; the others may well be its victims.
-      const std::string words = describeOnScope(suspects[i]);
-      if (isMuted(state)) {
-        status.summary(DiagnosticStatus::OK, "muted: " + words);
-      } else {
-        status.summary(i == 0 && !state.shared && state.last.level == DiagnosticStatus::ERROR
-                           ? DiagnosticStatus::ERROR
-                           : DiagnosticStatus::WARN,
-                       words);
-      }
-      break;
+  const auto suspect = std::find_if(suspects.begin(), suspects.end(), [&](const auto& each) {
+    return core::componentOf(each.source, each.scope) == name;
+  });
+  // One is to blame; others may well be its victims, and who is within its limits is well.
+  const bool is_named = suspect != suspects.end();
+  const bool is_to_blame = name == state.last.component;
+  if (state.last.level != DiagnosticStatus::OK &&
+      (is_to_blame || (is_named && suspect->abnormal))) {
+    const std::string words = is_named ? describeOnScope(*suspect) : state.last.reason;
+    if (isMuted(state)) {
+      status.summary(DiagnosticStatus::OK, "muted: " + words);
+    } else {
+      status.summary(
+          is_to_blame ? state.last.level : static_cast<std::uint8_t>(DiagnosticStatus::WARN),
+          words);
     }
   }
   const auto restarts = state.restarts.find(name);

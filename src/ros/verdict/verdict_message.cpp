@@ -41,6 +41,7 @@ std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>
     message.unit = reason.unit;
     message.value = reason.value;
     message.usual = reason.usual;
+    message.abnormal = suspect.abnormal;
     message.onset = toRosTime(suspect.onset);
     message.since = toRosTime(suspect.since);
     message.silence = silenceOf(reason);

@@ -37,8 +37,9 @@ def interval(start: float, end: float, suspects: Sequence[NamedSuspect] = (), le
                     busy, silence, list(suspects), [])
 
 
-def found(*listed: Interval, graph: Any = ()) -> List[Incident]:
-    of: Any = SimpleNamespace(by=SimpleNamespace(trained=SimpleNamespace(graph=set(graph))))
+def found(*listed: Interval, graph: Any = (), path: str = 'x.bag') -> List[Incident]:
+    of: Any = SimpleNamespace(by=SimpleNamespace(trained=SimpleNamespace(graph=set(graph))),
+                              recording=SimpleNamespace(part=SimpleNamespace(path=path)))
     return incidents(of, listed, 'x')
 
 
@@ -66,6 +67,14 @@ def test_what_stood_longest_comes_first() -> None:
         interval(1.0, 99.0, [suspect('/c')], SUSPICION),
         interval(200.0, 202.0, [suspect('/a')]), interval(300.0, 330.0, [suspect('/b')]))
     assert [worst.cause, short.cause, slight.cause] == ['/b', '/a', '/c']
+
+
+def test_a_flight_record_begins_with_the_alarm_that_it_was_written_for() -> None:
+    listed = [interval(1.0, 99.0, [suspect('/older')]), interval(290.0, 300.0, [suspect('/a')]),
+              interval(299.0, 300.0, [suspect('/c')], SUSPICION)]
+    assert [each.cause for each in found(
+        *listed, path='recorder/alarm_2026-11-22-05-10-33.123.bag')] == ['/a', '/older', '/c']
+    assert found(*listed, path='recorder/dump_2026-11-22-05-10-33.123.bag')[0].cause == '/older'
 
 
 def test_several_that_fail_at_once_are_in_the_headline() -> None:

@@ -11,6 +11,7 @@ namespace self_awareness::ros1 {
 namespace {
 
 using self_awareness::ComponentState;
+using self_awareness::SelfAwareness;
 
 class ComponentsTest : public testing::Test {
  protected:
@@ -39,6 +40,14 @@ class ComponentsTest : public testing::Test {
     if (age) {
       component.rates = {{"/scan", 24.0}, {"/odom", 10.0}};
     }
+  }
+  void suspect(const std::string& source, bool abnormal) {
+    self_awareness::Suspect suspect;
+    suspect.source = source;
+    suspect.scope = "/topic";
+    suspect.reason = "silent";
+    suspect.abnormal = abnormal;
+    state_.last.suspects.push_back(suspect);
   }
   std::map<std::string, ComponentState> components(const Graph* graph) {
     std::map<std::string, ComponentState> components;
@@ -72,6 +81,28 @@ TEST_F(ComponentsTest, SaysHowEachOneIs) {
   EXPECT_EQ(slam.share, -1);
   EXPECT_EQ(slam.usual_rate, 0);
   EXPECT_EQ(slam.not_watched, "too few messages in training: 3 gaps");
+}
+
+TEST_F(ComponentsTest, WhileAnAlarmStandsWhoIsWithinItsLimitsIsWell) {
+  hear("/nav", 0.1);
+  state_.last.level = SelfAwareness::ERROR;
+  state_.last.component = "/slam";
+  suspect("/player", true);
+  suspect("/slam", false);
+  suspect("/nav", false);
+  std::map<std::string, ComponentState> all = components(nullptr);
+  EXPECT_EQ(all["/slam"].level, ComponentState::ERROR);
+  EXPECT_EQ(all["/slam"].state, "/topic: silent");
+  EXPECT_EQ(all["/player"].level, ComponentState::WARN);
+  EXPECT_EQ(all["/nav"].level, ComponentState::OK);
+  state_.last.component = "/nav";
+  state_.last.reason = "silent for 9 s";
+  state_.last.suspects.pop_back();
+  all = components(nullptr);
+  EXPECT_EQ(all["/nav"].level, ComponentState::ERROR) << "until the alarm ends";
+  EXPECT_EQ(all["/nav"].state, "silent for 9 s");
+  state_.last.level = SelfAwareness::OK;
+  EXPECT_EQ(components(nullptr)["/player"].level, ComponentState::OK);
 }
 
 TEST_F(ComponentsTest, NobodyOfTheGraphIsUnlisted) {

@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 import math
+import os
+import re
 from dataclasses import dataclass, replace
 from typing import Any, Dict, List, Sequence
 
@@ -10,6 +12,8 @@ from self_awareness.reporting.report.headline import headline
 from self_awareness.reporting.report.intervals import ALARM, Interval, NamedSuspect
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import nanoseconds
+
+_OF_AN_ALARM = re.compile(r'alarm_\d{4}-\d\d-\d\d-')  # RecorderFolder::pathOf()
 
 MOST_DETAILS = 40
 """Incidents with details, at most so many; the worst come first."""
@@ -67,7 +71,8 @@ class Incident:
 
 
 def incidents(judged: Judged, listed: Sequence[Interval], prefix: str) -> List[Incident]:
-    """Return what happened: alarms before suspicions, and what stood longest first.
+    """Return what happened: alarms before suspicions, and what stood longest first; in a file of the
+    flight recorder, the alarm that it was written for, which is the last one.
 
     Args:
         listed: all alarms and suspicions, in the order of time.
@@ -77,7 +82,12 @@ def incidents(judged: Judged, listed: Sequence[Interval], prefix: str) -> List[I
     made = [_incident([listed[number] for number in each.ids], listed[each.main], each.together,
                       each.victims, each.others)
             for each in fold_incidents(occurrences, judged.by.trained.graph)]
-    made.sort(key=lambda each: (each.level != ALARM, -each.standing, each.main.start))
+    written_for = None
+    if _OF_AN_ALARM.match(os.path.basename(judged.recording.part.path)):
+        written_for = max((each.start for each in listed if each.level == ALARM), default=None)
+    made.sort(key=lambda each: (
+        each.level != ALARM, all(alarm.start != written_for for alarm in each.alarms),
+        -each.standing, each.main.start))
     return [replace(each, key=f'{prefix}-{number}') for number, each in enumerate(made)]
 
 
