@@ -154,6 +154,8 @@ def _lines(judged: Judged, incident: Incident) -> Iterator[str]:
     """Return what happened, the longest alarm of it, and whom that names."""
     place = place_of(judged, incident)
     yield f'  {incident.headline}' + (f' ({place})' if place else '')
+    for further in incident.further:
+        yield f'  {further}'
     main = incident.main
     level = 'suspicion: ' if incident.level == SUSPICION else ''
     more = len(incident.intervals) - 1

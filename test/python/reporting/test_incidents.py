@@ -53,6 +53,15 @@ def test_ten_alarms_of_one_cause_are_one_incident() -> None:
     assert incident.key != other.key
 
 
+def test_a_second_death_in_an_alarm_has_a_sentence_of_its_own() -> None:
+    graph = {('/a', '/t', '/victim')}
+    incident, = found(interval(29.0, 90.0, [
+        suspect('/a', silence=Silence(28.5, None)), suspect('/victim', silence=Silence(28.5, None)),
+        suspect('/b', silence=Silence(50.0, 70.0)), suspect('/late', 'answers late')]), graph=graph)
+    assert incident.headline.startswith('/a (/t) ')
+    assert incident.further == ['/b (/t) fell silent at 50.0 s, and came back at 70.0 s.']
+
+
 def test_a_suspicion_is_of_the_incident_of_its_alarm() -> None:
     """It may have blamed a victim first."""
     incident, = found(interval(28.5, 28.7, [suspect('/b'), suspect('/a')], SUSPICION),

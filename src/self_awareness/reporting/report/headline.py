@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Sequence
 
 from self_awareness import sentence
-from self_awareness.reporting.report.intervals import Interval
+from self_awareness.reporting.report.intervals import Interval, NamedSuspect
 
 _SOON_S = 1.0
 
@@ -50,6 +50,20 @@ def headline(main: Interval, together: Sequence[str], times: int) -> str:
         silent=len(main.of.silent.components) if main.of.silent is not None else 0)
     if main.before_end is not None:
         text = f'{text}, {main.before_end:.1f} s before the recording ended'
+    return f'{text[0].upper()}{text[1:]}.'
+
+
+def of_another(suspect: NamedSuspect) -> str:
+    """Return the sentence on one that fell silent in the alarm of somebody else, whom it does not
+    need."""
+    silence = suspect.silence
+    assert silence is not None
+    back = '' if silence.back is None else f', and came back at {clock(silence.back)}'
+    text = sentence(
+        kind=suspect.of.reason.kind, components=[suspect.component],
+        topic=suspect.event_type.split(' ')[-2], wrong=suspect.short, reason='', is_silence=True,
+        begin=clock(silence.begin) if silence.begin > 0 else '', end='', goes_on='', back=back,
+        times=1, hosts=[], silent=0)
     return f'{text[0].upper()}{text[1:]}.'
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 import math
 import os
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any, Dict, List, Sequence
 
 from self_awareness import Occurrence, fold_incidents
-from self_awareness.reporting.report.headline import headline
+from self_awareness.reporting.report.headline import headline, of_another
 from self_awareness.reporting.report.intervals import ALARM, Interval, NamedSuspect
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import nanoseconds
@@ -32,6 +32,7 @@ class Incident:
             tells; empty: there is no graph.
         others: further components that are named.
         headline: in words.
+        further: the same of each of the others that fell silent.
     """
 
     key: str
@@ -41,6 +42,7 @@ class Incident:
     victims: List[str]
     others: List[str]
     headline: str
+    further: List[str] = field(default_factory=list)
 
     @property
     def level(self) -> str:
@@ -104,6 +106,7 @@ def as_values(incident: Incident) -> Dict[str, Any]:
     """Return an incident as plain values; keys that end in _s count from the first message."""
     return {
         'headline': incident.headline,
+        'further': incident.further,
         'level': incident.main.of.level,
         'kind': incident.main.of.kind,
         'cause': incident.cause or None,
@@ -134,5 +137,7 @@ def _occurrence(number: int, interval: Interval) -> Occurrence:
 def _incident(intervals: List[Interval], main: Interval, together: List[str],
               victims: List[str], others: List[str]) -> Incident:
     alarms = [each for each in intervals if each.level == main.level]
+    further = {each.component: of_another(each) for each in reversed(main.named)
+               if each.component in others and each.abnormal and each.silence is not None}
     return Incident('', intervals, main, together, victims, others,
-                    headline(main, together, len(alarms)))
+                    headline(main, together, len(alarms)), list(further.values())[::-1])

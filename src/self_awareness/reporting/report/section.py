@@ -175,6 +175,8 @@ def _summary(judged: Judged, happened: List[Incident]) -> Summary:
     main = worst.main
     if main.busy is not None:
         answers.append(('But', main.busy))
+    for further in worst.further:
+        answers.append(('And', further))
     if worst.victims:
         answers.append(('Victims', ', '.join(worst.victims)))
     if worst.others:
