@@ -13,6 +13,9 @@ namespace {
 // long [ns].
 constexpr std::int64_t kBacklog = 3 * kNanosecondsPerSecond;
 
+// A load comes and goes: a machine that is busy now and then is one suspicion [ns].
+constexpr std::int64_t kBusyHold = 10 * kNanosecondsPerSecond;
+
 /// Whether somebody is a suspect for being there, or for not being there.
 bool isOfPresence(const Suspect& suspect) {
   const Kind kind = suspect.reason.kind;
@@ -107,6 +110,7 @@ void Detector::clearAlarm() {
   resumed_ = false;
   awaited_.clear();
   suspicion_ = false;
+  suspicious_until_ = 0;
   silent_ = 0;
   named_.clear();
 }
@@ -208,7 +212,7 @@ void Detector::close(const Window& window, std::int64_t end) {
   if (verdict.settling) {
     verdict.alarm = persistence_.leaveOut(windows_.length());
     new_mode_.leaveOut(windows_.length());
-    suspicious_at_ += windows_.length();
+    suspicious_until_ += windows_.length();
   } else {
     leaveOutShortStops(judgement, window_end);
     verdict.evidence = judgement.evidence;
@@ -279,8 +283,10 @@ void Detector::count(const Judgement& judgement, std::int64_t end) {
   persistence_.add(judgement.abnormal, end, judgement.abnormal && judgement.certain);
   if (judgement.threshold && (judgement.abnormal || judgement.suspicious)) {
     suspicion_ = true;
-    suspicious_at_ = end;
-  } else if (end - suspicious_at_ >= parameters_.persistence.hold_time) {
+    const std::int64_t hold = parameters_.persistence.hold_time;
+    suspicious_until_ =
+        std::max(suspicious_until_, end + (judgement.busy ? std::max(hold, kBusyHold) : hold));
+  } else if (end >= suspicious_until_) {
     suspicion_ = false;
   }
 }

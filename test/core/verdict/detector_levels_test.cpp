@@ -41,6 +41,26 @@ TEST_F(DetectorLevelsTest, WhoStopTogetherAreANewModeOnceTheyStayAway) {
   EXPECT_EQ(changes_, 2);
 }
 
+TEST_F(DetectorLevelsTest, AMachineThatIsBusyNowAndThenIsOneSuspicion) {
+  start();
+  for (int time = 0; time < 3; ++time) {
+    told_->busy = Busy{};
+    told_->suspicious = true;
+    windows(1);
+    told_->busy.reset();
+    told_->suspicious = false;
+    windows(99);
+    EXPECT_TRUE(verdict_.suspicion);
+  }
+  EXPECT_EQ(changes_, 1);
+  EXPECT_FALSE(window().suspicion);
+  told_->suspicious = true;
+  windows(1);
+  told_->suspicious = false;
+  windows(20);
+  EXPECT_FALSE(verdict_.suspicion) << "others end sooner";
+}
+
 TEST_F(DetectorLevelsTest, AllWhoFallSilentAreToldAtOnce) {
   start();
   told_->silent = Silent{};

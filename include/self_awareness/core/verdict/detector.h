@@ -164,7 +164,7 @@ class Detector : private WindowObserver {
   std::map<EventId, Awaited> awaited_;  // its suspects that have to be heard
   std::size_t silent_ = 0;              // components that the alarm said are silent together
   bool suspicion_ = false;              // whether it stands
-  std::int64_t suspicious_at_ = 0;      // end of the last suspicious window [ns], while it stands
+  std::int64_t suspicious_until_ = 0;   // [ns], while it stands
   std::int64_t settled_at_ = 0;         // [ns], valid once started
   std::int64_t resumed_at_ = 0;         // all has settled since this program stood still [ns]
   std::vector<bool> heard_;             // since the start, by id
