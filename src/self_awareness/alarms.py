@@ -55,6 +55,7 @@ def _suspect(suspect: Suspect, event_type: str, origin: int) -> Dict[str, Any]:
     return {
         'component': suspect.component or None,
         'event_type': event_type,
+        'onset_s': _seconds(suspect.onset, origin) if suspect.onset else None,
         'since_s': _seconds(suspect.since, origin),
         'kind': reason.kind,
         'after': reason.after or None,
