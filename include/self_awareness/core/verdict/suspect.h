@@ -129,7 +129,7 @@ struct Suspect {
   /// Since when what is wrong with it has been so, as far as that is known [ns]: of who has not
   /// come, the last time that it did.
   std::int64_t onset = 0;
-  /// Of who does not come, when that had lasted for longer than it ever did [ns]; else 0.
+  /// Of who is silent beyond its limit, when it was nearly so [ns]; else 0.
   std::int64_t missed = 0;
   /// When the alarm or the suspicion that stands first named its component: end of the window
   /// [ns].

@@ -11,6 +11,8 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+constexpr std::int64_t kResolution = 1000000;  // of when somebody was missed [ns]
+
 /// Where all are silent, who they are is told, though none of them is to blame.
 bool isNamed(const Excess& excess) {
   return excess.excuse == Excuse::kNone || excess.excuse == Excuse::kAllSilent;
@@ -98,7 +100,7 @@ std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
     if (suspects.size() < kMostSuspects || each.abnormal) {
       Suspect suspect = suspectOf(*each.main, window);
       suspect.abnormal = each.abnormal;
-      suspect.missed = each.wrong == Wrong::kAbsent ? each.latest : 0;
+      suspect.missed = each.sure ? missedAt(*each.main, window) : 0;
       if (each.alive && suspect.reason.kind == Kind::kSilent) {
         suspect.reason.kind =
             suspect.reason.after.empty() ? Kind::kTopicSilent : Kind::kUnanswered;
@@ -118,6 +120,21 @@ Suspect Explanation::suspectOf(const Excess& excess, const Window& window) const
   suspect.onset = excess.onset;
   window.scorer.explain(excess.track, window.events, suspect);
   return suspect;
+}
+
+std::int64_t Explanation::missedAt(const Excess& excess, const Window& window) const {
+  const EventId id = trackOf(excess).to;
+  const std::int64_t age = window.scorer.heard().age(id);
+  if (model_->finding(excess.track) != Finding::kSilent || excess.share < 1) {
+    return 0;
+  }
+  const double near = model_->overdue(id, age) / excess.share * tuning_.near_limit;
+  std::int64_t from = 0;
+  for (std::int64_t to = age; to - from > kResolution;) {
+    const std::int64_t middle = from + (to - from) / 2;
+    (model_->overdue(id, middle) < near ? from : to) = middle;
+  }
+  return excess.onset + from;
 }
 
 bool Explanation::isAbsent(const Excess& excess, const Window& window) const {

@@ -69,6 +69,8 @@ class Explanation {
   bool follows(const Track& track) const;
   const Track& trackOf(const Excess& excess) const { return model_->tracks()[excess.track]; }
   Suspect suspectOf(const Excess& excess, const Window& window) const;
+  /// When a silence that is beyond its limit was near it [ns]; 0: it says something else.
+  std::int64_t missedAt(const Excess& excess, const Window& window) const;
   /// Whether it says that its type has not come, for longer than is usual.
   bool isAbsent(const Excess& excess, const Window& window) const;
   void accuse(const Excess& excess, const Window& window, std::vector<Accused>& accused) const;
