@@ -50,8 +50,8 @@ void BlockedNode::ask(const core::EventType& type) {
       }
     }
   }
-  std::set<std::string> nodes = publishers_;
-  nodes.insert(subscribers_.begin(), subscribers_.end());
+  std::vector<std::string> nodes(publishers_.begin(), publishers_.end());
+  nodes.insert(nodes.end(), subscribers_.begin(), subscribers_.end());
   if (!publishers_.empty()) {
     step_ = Step::kAsked;
     ask_(std::move(nodes));

@@ -3,6 +3,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "host.h"
 #include "part.h"
@@ -15,7 +16,7 @@ namespace self_awareness {
 class BlockedNode : public Part {
  public:
   /// Has these nodes asked (Discovery::ask()).
-  using Ask = std::function<void(std::set<std::string> nodes)>;
+  using Ask = std::function<void(std::vector<std::string> nodes)>;
 
   BlockedNode(Host& host, Ask ask);
 

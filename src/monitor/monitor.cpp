@@ -34,7 +34,7 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
       kept_logs_(
           parameters_.kept_logs, [this] { return source(); }, wallNow()),
       not_heard_(*this),
-      blocked_(*this, [this](std::set<std::string> nodes) { live_->ask(std::move(nodes)); }),
+      blocked_(*this, [this](std::vector<std::string> nodes) { live_->ask(std::move(nodes)); }),
       restarts_(*this),
       keeper_(folderOf(parameters_.recorder), parameters_.run_id),
       incidents_(folderOf(parameters_.recorder),

@@ -4,7 +4,6 @@
 #include <ros/this_node.h>
 
 #include <algorithm>
-#include <iterator>
 #include <map>
 #include <utility>
 
@@ -126,13 +125,11 @@ void Discovery::run() {
   }
 }
 
-void Discovery::ask(std::set<std::string> nodes) {
-  while (nodes.size() > kMostAsked) {
-    nodes.erase(std::prev(nodes.end()));
-  }
+void Discovery::ask(std::vector<std::string> nodes) {
+  nodes.resize(std::min(nodes.size(), kMostAsked));
   {
     const auto shared = shared_.lock();
-    shared->to_ask = std::move(nodes);
+    shared->to_ask = {nodes.begin(), nodes.end()};
     shared->hanging.reset();
     shared->poll_now = true;
   }

@@ -61,8 +61,8 @@ class Discovery {
 
   /// Polls at once with what is wanted from now on.
   void setWanted(Wanted wanted);
-  /// Has up to kMostAsked nodes asked once whether they answer, after the next poll, which is now.
-  void ask(std::set<std::string> nodes);
+  /// Has the first kMostAsked nodes asked once whether they answer, after a poll at once.
+  void ask(std::vector<std::string> nodes);
   /// Who of them did not (ros1::hangingNodes()); none: they are still asked.
   std::optional<std::set<std::string>> hanging() const { return shared_.lock()->hanging; }
   State state() const;

@@ -102,7 +102,7 @@ class LiveSource {
   /// Turns what has arrived into events.
   void deliver() { live_events_.deliver(); }
   /// Has nodes asked, as Discovery::ask().
-  void ask(std::set<std::string> nodes) { discovery_.ask(std::move(nodes)); }
+  void ask(std::vector<std::string> nodes) { discovery_.ask(std::move(nodes)); }
   /// Has the listener report now; the next time is a period later.
   void report();
 

@@ -35,6 +35,7 @@ void blame(const Suspect& suspect, Alarm& alarm) {
   alarm.culprit = suspect.component;
   alarm.reason = suspect.reason.words;
   alarm.kind = suspect.reason.kind;
+  alarm.note.clear();
 }
 
 /// Takes in that a culprit has an excuse, that who is dead has none any more, or that somebody was

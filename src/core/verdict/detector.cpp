@@ -284,8 +284,9 @@ void Detector::count(const Judgement& judgement, std::int64_t end) {
   if (judgement.threshold && (judgement.abnormal || judgement.suspicious)) {
     suspicion_ = true;
     const std::int64_t hold = parameters_.persistence.hold_time;
+    const bool flaps = judgement.busy && !persistence_.raised();
     suspicious_until_ =
-        std::max(suspicious_until_, end + (judgement.busy ? std::max(hold, kBusyHold) : hold));
+        std::max(suspicious_until_, end + (flaps ? std::max(hold, kBusyHold) : hold));
   } else if (end >= suspicious_until_) {
     suspicion_ = false;
   }

@@ -134,7 +134,8 @@ std::int64_t Explanation::missedAt(const Excess& excess, const Window& window) c
     const std::int64_t middle = from + (to - from) / 2;
     (model_->overdue(id, middle) < near ? from : to) = middle;
   }
-  return excess.onset + from;
+  // Stalls do not count in its age.
+  return window.scorer.heard().windowEnd() - (age - from);
 }
 
 bool Explanation::isAbsent(const Excess& excess, const Window& window) const {
