@@ -15,23 +15,54 @@
 
 namespace self_awareness {
 
+std::string whoBlocks(const std::set<std::string>& publishers,
+                      const std::set<std::string>& subscribers,
+                      const Discovery::Answers& answers) {
+  const auto does = [&](const std::string& node, ros1::Answer what) {
+    const auto answer = answers.find(node);
+    return answer != answers.end() && answer->second == what;
+  };
+  if (!std::all_of(publishers.begin(), publishers.end(),
+                   [&](const std::string& node) { return does(node, ros1::Answer::kGiven); })) {
+    return "";
+  }
+  std::vector<std::string> blocking;
+  std::copy_if(subscribers.begin(), subscribers.end(), std::back_inserter(blocking),
+               [&](const std::string& node) { return does(node, ros1::Answer::kNone); });
+  if (blocking.empty()) {
+    return "";
+  }
+  const bool several = blocking.size() > 1;
+  return std::string("it answers, but its subscriber") + (several ? "s " : " ") +
+         core::listed(blocking, blocking.size()) + (several ? " do not" : " does not");
+}
+
 BlockedNode::BlockedNode(Host& host, Ask ask) : host_(host), ask_(std::move(ask)) {}
 
 void BlockedNode::onVerdict(core::Verdict& verdict, ros1::Circumstances& /*circumstances*/) {
   if (!verdict.alarm) {
-    step_ = Step::kNone;
-  } else if (step_ == Step::kNone && !verdict.suspects.empty()) {
+    return;
+  }
+  if (step_ == Step::kNone && !verdict.suspects.empty()) {
     const core::Suspect& first = verdict.suspects.front();
     step_ = Step::kTold;
     if (isSilence(first.reason.kind)) {
       ask(host_.session()->vocabulary().at(first.id));
     }
   } else if (step_ == Step::kAsked) {
-    if (const std::optional<std::set<std::string>> hanging = host_.live().discovery().hanging()) {
+    if (const std::optional<Discovery::Answers> answers = host_.live().discovery().answers()) {
       step_ = Step::kTold;
-      verdict.note = inWords(*hanging);
+      verdict.note = whoBlocks(publishers_, subscribers_, *answers);
       verdict.changed = verdict.changed || !verdict.note.empty();
     }
+  }
+}
+
+void BlockedNode::onAlarm(const ros1::AlarmState& alarm) {
+  if (alarm.message().level != self_awareness::SelfAwareness::ERROR) {
+    step_ = Step::kNone;
+  } else if (step_ == Step::kNone) {
+    step_ = Step::kTold;
   }
 }
 
@@ -56,18 +87,6 @@ void BlockedNode::ask(const core::EventType& type) {
     step_ = Step::kAsked;
     ask_(std::move(nodes));
   }
-}
-
-std::string BlockedNode::inWords(const std::set<std::string>& hanging) const {
-  const auto hangs = [&](const std::string& node) { return hanging.count(node) > 0; };
-  std::vector<std::string> blocking;
-  std::copy_if(subscribers_.begin(), subscribers_.end(), std::back_inserter(blocking), hangs);
-  if (blocking.empty() || std::any_of(publishers_.begin(), publishers_.end(), hangs)) {
-    return "";
-  }
-  const bool several = blocking.size() > 1;
-  return std::string("it answers, but its subscriber") + (several ? "s " : " ") +
-         core::listed(blocking, blocking.size()) + (several ? " do not" : " does not");
 }
 
 }  // namespace self_awareness

@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "ros/live/hanging_nodes.h"
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness {
@@ -126,25 +125,32 @@ void Discovery::run() {
 }
 
 void Discovery::ask(std::vector<std::string> nodes) {
-  nodes.resize(std::min(nodes.size(), kMostAsked));
   {
     const auto shared = shared_.lock();
-    shared->to_ask = {nodes.begin(), nodes.end()};
-    shared->hanging.reset();
+    shared->to_ask = std::move(nodes);
+    shared->answers.reset();
     shared->poll_now = true;
   }
   wake_.notify_all();
 }
 
 void Discovery::askNodes() {
-  const std::set<std::string> nodes = std::exchange(shared_.lock()->to_ask, {});
-  if (!nodes.empty()) {
-    std::set<std::string> hanging =
-        ros1::hangingNodes(ros1::fetchAddresses(nodes), kPatienceOfNode);
-    const auto shared = shared_.lock();
-    if (shared->to_ask.empty()) {  // else others are asked already
-      shared->hanging = std::move(hanging);
+  const std::vector<std::string> nodes = std::exchange(shared_.lock()->to_ask, {});
+  if (nodes.empty()) {
+    return;
+  }
+  const auto end = std::chrono::steady_clock::now() + kLongestAsking;
+  std::map<std::string, std::string> addresses =
+      ros1::fetchAddresses({nodes.begin(), nodes.end()});
+  Answers answers;
+  for (const std::string& node : nodes) {
+    if (!shared_.lock()->stopping && std::chrono::steady_clock::now() < end) {
+      answers[node] = ros1::callNode(addresses[node], kPatienceOfNode);
     }
+  }
+  const auto shared = shared_.lock();
+  if (shared->to_ask.empty()) {  // else others are asked already
+    shared->answers = std::move(answers);
   }
 }
 

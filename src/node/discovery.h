@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -11,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "ros/live/node_call.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/guarded.h"
@@ -30,8 +32,8 @@ class Discovery {
  public:
   /// Most topics that are subscribed to besides those of the model: each takes memory and files.
   static constexpr std::size_t kMostOthers = 2000;
-  /// Each of those that are asked may have to be waited for.
-  static constexpr std::size_t kMostAsked = 20;
+  /// Nothing else is done meanwhile.
+  static constexpr std::chrono::seconds kLongestAsking{3};
 
   /// What the subscriptions are chosen by.
   struct Wanted {
@@ -54,17 +56,21 @@ class Discovery {
   /// @param services full names of services to register again after a restart of the master
   Discovery(ros1::Arrivals& arrivals, ros1::SubscribePolicy policy, double interval,
             std::vector<std::string> services);
-  /// Ends the thread and the subscriptions; waits for a call to the master that is under way.
+  /// Ends the thread and the subscriptions; waits for a call that is under way, to the master or a
+  /// node.
   ~Discovery();
   Discovery(const Discovery&) = delete;
   Discovery& operator=(const Discovery&) = delete;
 
   /// Polls at once with what is wanted from now on.
   void setWanted(Wanted wanted);
-  /// Has the first kMostAsked nodes asked once whether they answer, after a poll at once.
+  /// What nodes answered, by name; without those that there was no time for.
+  using Answers = std::map<std::string, ros1::Answer>;
+  /// Has nodes asked once whether they answer, one after the other, for kLongestAsking in all,
+  /// after a poll at once.
   void ask(std::vector<std::string> nodes);
-  /// Who of them did not (ros1::hangingNodes()); none: they are still asked.
-  std::optional<std::set<std::string>> hanging() const { return shared_.lock()->hanging; }
+  /// What they answered; none: they are still asked.
+  std::optional<Answers> answers() const { return shared_.lock()->answers; }
   State state() const;
   /// Publishers that the master names, and that are not heard.
   std::vector<ros1::Unheard> unheard() const { return subscriptions_.unheard(); }
@@ -75,8 +81,8 @@ class Discovery {
     State state;
     /// While the master is asked: since when.
     std::optional<std::chrono::steady_clock::time_point> asked_at;
-    std::set<std::string> to_ask;
-    std::optional<std::set<std::string>> hanging;  ///< of those that were asked
+    std::vector<std::string> to_ask;
+    std::optional<Answers> answers;
     bool poll_now = true;
     bool stopping = false;
   };

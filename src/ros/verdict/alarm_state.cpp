@@ -1,5 +1,6 @@
 #include "alarm_state.h"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -76,6 +77,15 @@ void AlarmState::resume(const self_awareness::StandingAlarm& before,
   standing.culprit = alarm.component;
   standing.reason = alarm.reason;
   standing.evidence = alarm.evidence;
+  // A message does not say on how many topics somebody is who should not be there.
+  suspects.erase(std::remove_if(suspects.begin(), suspects.end(),
+                                [](const core::Suspect& suspect) {
+                                  const core::Kind kind = suspect.reason.kind;
+                                  return kind == core::Kind::kStranger ||
+                                         kind == core::Kind::kUnsubscribed ||
+                                         kind == core::Kind::kTwoSenders;
+                                }),
+                 suspects.end());
   standing.suspects = std::move(suspects);
   alarms_.resume(std::move(standing));
   message_ = alarm;

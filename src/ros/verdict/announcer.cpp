@@ -8,9 +8,14 @@ Announcer::Announcer(Handlers handlers) : handlers_(std::move(handlers)) {}
 
 void Announcer::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
                     std::int64_t window, const Circumstances& circumstances) {
+  const auto cause = [this] {
+    const self_awareness::SelfAwareness& said = alarm_.message();
+    return std::pair(said.kind, said.component);
+  };
+  const auto before = cause();
   alarm_.add(verdict, vocabulary, window, circumstances);
   handlers_.on_status(alarm_.message());
-  if (verdict.changed) {
+  if (verdict.changed || (alarm_.stands() && cause() != before)) {
     handlers_.on_alarm(alarm_.message());
     handlers_.on_diagnostics();
   }

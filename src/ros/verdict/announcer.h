@@ -20,7 +20,8 @@ class Announcer {
   struct Handlers {
     /// Called with every window: ~status.
     std::function<void(const self_awareness::SelfAwareness&)> on_status;
-    /// Called with each change of the level, and when an alarm names further components: ~alarm.
+    /// Called with each change of the level, and when an alarm names further components, or
+    /// another one is to blame: ~alarm.
     std::function<void(const self_awareness::SelfAwareness&)> on_alarm;
     /// Called after each change: /diagnostics cannot wait for the next heartbeat.
     std::function<void()> on_diagnostics;

@@ -24,7 +24,6 @@ void CommunicationState::take(const AlarmState& alarm, const HeardReport& report
                               std::int64_t now) {
   started = alarm.spoken();
   last = alarm.message();
-  shared = !alarm.shared().empty();
   level_for = alarm.standsFor(now);
   heard = report;
 }
@@ -230,8 +229,9 @@ void tellComponent(const CommunicationState& state, const std::string& name,
   // One is to blame; others may well be its victims, and who is within its limits is well.
   const bool is_named = suspect != suspects.end();
   const bool is_to_blame = name == state.last.component;
+  const bool is_left = is_to_blame && suspects.empty();
   if (state.last.level != DiagnosticStatus::OK &&
-      (is_to_blame || (is_named && suspect->abnormal))) {
+      (is_left || (is_named && (is_to_blame || suspect->abnormal)))) {
     const std::string words = is_named ? describeOnScope(*suspect) : state.last.reason;
     if (isMuted(state)) {
       status.summary(DiagnosticStatus::OK, "muted: " + words);

@@ -33,7 +33,6 @@ struct CommunicationState {
   std::string nothing_heard;
   bool started = false;                ///< something was said of a window
   self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
-  bool shared = false;                 ///< what components share is to blame, and no component
   double level_for = 0;                ///< how long it has had its level [s]
   HeardReport heard;
   /// Who muted what stands, and until when, in words; empty: nobody did. What is muted is OK.

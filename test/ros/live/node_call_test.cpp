@@ -1,4 +1,4 @@
-#include "ros/live/hanging_nodes.h"
+#include "ros/live/node_call.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,6 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
-#include <set>
 #include <string>
 #include <thread>
 
@@ -33,19 +32,19 @@ class Server {
   tcp::acceptor acceptor_{context_, {boost::asio::ip::address_v4::loopback(), 0}};
 };
 
-TEST(HangingNodes, AreThoseThatTakeACallAndDoNotAnswer) {
+TEST(NodeCall, IsAnsweredOrNotOrRefused) {
+  constexpr std::chrono::milliseconds kPatience(300);
   Server well;
-  Server hung;
+  std::thread answering([&] { well.answerOnce(); });
+  EXPECT_EQ(callNode(well.uri(), kPatience), Answer::kGiven);
+  answering.join();
+  const Server hung;
+  EXPECT_EQ(callNode(hung.uri(), kPatience), Answer::kNone);
   Server dead;
   const std::string nobody = dead.uri();
   dead.close();
-  std::thread answering([&] { well.answerOnce(); });
-  EXPECT_EQ(
-      hangingNodes(
-          {{"/well", well.uri()}, {"/hung", hung.uri()}, {"/dead", nobody}, {"/unknown", ""}},
-          std::chrono::milliseconds(300)),
-      std::set<std::string>{"/hung"});
-  answering.join();
+  EXPECT_EQ(callNode(nobody, kPatience), Answer::kRefused);
+  EXPECT_EQ(callNode("", kPatience), Answer::kRefused);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "hanging_nodes.h"
+#include "node_call.h"
 
 #include <ros/network.h>
 #include <ros/this_node.h>
@@ -6,13 +6,18 @@
 
 #include <boost/asio/ip/tcp.hpp>
 #include <cstdint>
+#include <istream>
 
 namespace self_awareness::ros1 {
-namespace {
 
-// XmlRpcClient waits for ever.
-bool hangs(const std::string& host, std::uint32_t port, std::chrono::milliseconds patience) {
+// By hand, because XmlRpcClient waits for ever.
+Answer callNode(const std::string& uri, std::chrono::milliseconds patience) {
   namespace asio = boost::asio;
+  std::string host;
+  std::uint32_t port = 0;
+  if (!ros::network::splitURI(uri, host, port)) {
+    return Answer::kRefused;
+  }
   const std::string call = "<methodCall><methodName>getPid</methodName><params><param>" +
                            XmlRpc::XmlRpcValue(ros::this_node::getName()).toXml() +
                            "</param></params></methodCall>";
@@ -22,23 +27,12 @@ bool hangs(const std::string& host, std::uint32_t port, std::chrono::millisecond
   node << "POST / HTTP/1.1\r\nHost: " << host
        << "\r\nContent-Type: text/xml\r\nContent-Length: " << call.size() << "\r\n\r\n"
        << call << std::flush;
-  node.get();
-  return node.error() == asio::error::timed_out || node.error() == asio::error::operation_aborted;
-}
-
-}  // namespace
-
-std::set<std::string> hangingNodes(const std::map<std::string, std::string>& addresses,
-                                   std::chrono::milliseconds patience) {
-  std::set<std::string> hanging;
-  for (const auto& [node, uri] : addresses) {
-    std::string host;
-    std::uint32_t port = 0;
-    if (ros::network::splitURI(uri, host, port) && hangs(host, port, patience)) {
-      hanging.insert(node);
-    }
+  if (node.get() != std::istream::traits_type::eof()) {
+    return Answer::kGiven;
   }
-  return hanging;
+  const bool waited =
+      node.error() == asio::error::timed_out || node.error() == asio::error::operation_aborted;
+  return waited ? Answer::kNone : Answer::kRefused;
 }
 
 }  // namespace self_awareness::ros1
