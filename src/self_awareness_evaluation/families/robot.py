@@ -205,8 +205,8 @@ class Robot:
 
     def _check(self, fault: Fault) -> None:
         of_robot = fault.kind in (STARVED, SILENT)
-        if not of_robot and fault.kind not in (CRASH, HALF_RATE, LATE, MISSES, RESTART,
-                                                   *AFTER_CRASH):
+        if not of_robot and fault.kind not in (
+                CRASH, HALF_RATE, LATE, MISSES, RESTART, *AFTER_CRASH):
             raise ValueError(f'{fault.kind}: no such kind of fault')
         if fault.source not in ({''} if of_robot else {output.source for output in self.outputs}):
             raise ValueError(f'{fault.source}: no such component')

@@ -56,7 +56,8 @@ def test_all_say_the_same(case: str, bag: str, cases, tmp_path: Path, capsys) ->
             onset = alarm['begin_ns'] / 1e9 - alarm['begin_s'] + blamed['onset_s']
             assert clock(onset) in message.message
     title = re.search(r'<title>(.*?)</title>', page.read_text('utf-8'), re.S)
-    assert title and html.unescape(title[1]).strip().startswith(recording['incidents'][0]['headline'])
+    headline = recording['incidents'][0]['headline']
+    assert title and html.unescape(title[1]).strip().startswith(headline)
     for incident in recording['incidents']:
         assert f"  {incident['headline']}" in printed
         of_it = [alarms[id_] for id_ in incident['alarms'] if alarms[id_]['level'] ==

@@ -56,8 +56,10 @@ def test_ten_alarms_of_one_cause_are_one_incident() -> None:
 def test_a_second_death_in_an_alarm_has_a_sentence_of_its_own() -> None:
     graph = {('/a', '/t', '/victim')}
     incident, = found(interval(29.0, 90.0, [
-        suspect('/a', silence=Silence(28.5, None)), suspect('/victim', silence=Silence(28.5, None)),
-        suspect('/b', silence=Silence(50.0, 70.0)), suspect('/late', 'answers late')]), graph=graph)
+        suspect('/a', silence=Silence(28.5, None)),
+        suspect('/victim', silence=Silence(28.5, None)),
+        suspect('/b', silence=Silence(50.0, 70.0)),
+        suspect('/late', 'answers late')]), graph=graph)
     assert incident.headline.startswith('/a (/t) ')
     assert incident.further == ['/b (/t) fell silent at 50.0 s, and came back at 70.0 s.']
 

@@ -73,8 +73,8 @@ class Incident:
 
 
 def incidents(judged: Judged, listed: Sequence[Interval], prefix: str) -> List[Incident]:
-    """Return what happened: alarms before suspicions, and what stood longest first; in a file of the
-    flight recorder, the alarm that it was written for, which is the last one.
+    """Return what happened: alarms before suspicions, and what stood longest first; in a file of
+    the flight recorder, the alarm that it was written for, which is the last one.
 
     Args:
         listed: all alarms and suspicions, in the order of time.
