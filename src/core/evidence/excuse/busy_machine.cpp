@@ -41,7 +41,6 @@ void BusyMachine::restart() {
   busy_since_.reset();
   lateness_.assign(lateness_.size(), {});
   starved_since_.reset();
-  held_up_ = kNever;
 }
 
 std::optional<Busy> BusyMachine::excuse(std::vector<Excess>& excesses, const Scorer& scorer,
@@ -56,22 +55,9 @@ std::optional<Busy> BusyMachine::excuse(std::vector<Excess>& excesses, const Sco
   for (Excess& excess : excesses) {
     if (busy && excess.excuse == Excuse::kNone && covers(excess, *busy, heard)) {
       excess.excuse = Excuse::kBusy;
-      held_up_ = excess.share > model_->tuning().near_limit ? heard.windowEnd() : held_up_;
     }
-  }
-  if (busy && busy->late == 0 && !holdsUp(heard)) {
-    busy.reset();  // processes wait, but none that matters
   }
   return busy;
-}
-
-bool BusyMachine::holdsUp(const Heard& heard) {
-  for (EventId id = 0; id < model_->size(); ++id) {
-    if (heard.hasSeen(id) && heard.silence(id) > model_->longestGap(id) && mayHold(id, heard)) {
-      held_up_ = heard.windowEnd();
-    }
-  }
-  return isRecent(held_up_, heard.windowEnd());
 }
 
 bool BusyMachine::covers(const Excess& excess, const Busy& busy, const Heard& heard) const {

@@ -55,8 +55,6 @@ class BusyMachine {
   std::optional<std::int64_t> starvedSince(const Heard& heard);
   /// Whether a busy machine may be why an event type has not come for so long.
   bool mayHold(EventId id, const Heard& heard) const;
-  /// Whether it was lately why somebody came later than ever in training.
-  bool holdsUp(const Heard& heard);
   bool covers(const Excess& excess, const Busy& busy, const Heard& heard) const;
 
   static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
@@ -66,7 +64,6 @@ class BusyMachine {
   std::optional<std::int64_t> busy_since_;     // many are late at once [ns]
   std::vector<Lateness> lateness_;             // by component
   std::optional<std::int64_t> starved_since_;  // [ns]
-  std::int64_t held_up_ = kNever;              // end of the last window in which somebody was [ns]
 };
 
 }  // namespace self_awareness::core::evidence

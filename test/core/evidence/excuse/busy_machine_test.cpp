@@ -117,15 +117,9 @@ TEST_F(BusyMachineTest, WhatBeganBeforeIsNotExcused) {
 }
 
 TEST_F(BusyMachineTest, ItIsStarvedWhileProcessesWait) {
-  ASSERT_LT(model_->longestGap(1), 1700 * kMillisecond);
-  int every = 30;  // windows in which it is heard once: that is late
-  int waited = 0;
   const auto wait = [&](int windows, double share) {
     std::optional<Busy> busy;
     for (int k = 0; k < windows; ++k) {
-      if (waited++ % every == 0) {
-        scorer_.add({now_, 1});
-      }
       scorer_.hear({now_, now_ + kWindow, static_cast<std::int64_t>(share * kWindow)});
       busy = at(0, 1, 0);
     }
@@ -143,8 +137,6 @@ TEST_F(BusyMachineTest, ItIsStarvedWhileProcessesWait) {
             "late");
   EXPECT_TRUE(wait(2, 0));
   EXPECT_FALSE(wait(1, 0));
-  every = 1;
-  EXPECT_FALSE(wait(150, 1)) << "processes wait, but none that matters";
 }
 
 TEST_F(BusyMachineTest, WhoIsSilentIsNotLate) {
