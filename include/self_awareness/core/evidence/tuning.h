@@ -98,8 +98,6 @@ struct Tuning {
   double rare_silence = 0.01;
   double near_limit = 0.75;
   double least_share = 0.3;
-  double most_share = 2;
-  double share_of_other = 0.9;
 
   // The attributes of messages.
   double least_age = 0.5;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -105,7 +106,8 @@ std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
         suspect.reason.kind =
             suspect.reason.after.empty() ? Kind::kTopicSilent : Kind::kUnanswered;
       }
-      if (each.abnormal || !isUsual(suspect)) {
+      const bool is_left = each.wrong == Wrong::kOther;  // nobody else explains it
+      if (is_left ? each.abnormal && suspects.empty() : each.abnormal || !isUsual(suspect)) {
         suspects.push_back(std::move(suspect));
       }
     }
@@ -153,31 +155,28 @@ void Explanation::accuse(const Excess& excess, const Window& window,
                          std::vector<Accused>& accused) const {
   const Track& track = trackOf(excess);
   const Finding finding = model_->finding(excess.track);
-  const double share = std::min(excess.share, tuning_.most_share);
   Accused& later = accused[excess.component];
-  Wrong wrong = Wrong::kOther;
+  Accused* unusual = &later;
+  Wrong wrong = excess.share > tuning_.near_limit ? Wrong::kOwn : Wrong::kOther;
   if (isAbsence(finding)) {
     // An age that is usual has some share of its limit, too, and so has a request of now.
     if (!isAbsent(excess, window)) {
       return;
     }
     wrong = Wrong::kAbsent;
-  } else if (finding != Finding::kBetween ||
-             model_->component(track.from) == model_->component(track.to)) {
-    wrong = excess.share > tuning_.near_limit ? Wrong::kOwn : Wrong::kOther;
-  } else {
-    Accused& other = accused[model_->componentIndex(track.from)];
+  } else if (finding == Finding::kBetween &&
+             model_->component(track.from) != model_->component(track.to)) {
     // That what comes before it is late makes its delays shorter.
     if (suspectOf(excess, window).reason.kind == Kind::kEarly) {
-      other.sum += share;
-      later.sum -= (1 - tuning_.share_of_other) * share;
-    } else {
-      other.sum += tuning_.share_of_other * share;
+      unusual = &accused[model_->componentIndex(track.from)];
+      wrong = Wrong::kOther;
+    } else if (wrong == Wrong::kOwn) {
       wrong = Wrong::kLate;
+      later.after.insert(model_->componentIndex(track.from));
     }
   }
+  unusual->sum += excess.share;
   later.component = excess.component;
-  later.sum += share;
   later.abnormal = later.abnormal || excess.share > 1;
   // A silence that is abnormal says it all. Lost messages make gaps irregular, and not the other
   // way round.
@@ -221,12 +220,37 @@ void Explanation::setUnlikelyAside(std::vector<Accused>& accused, const Window& 
   std::for_each(left, accused.end(), [](Accused& each) { each.wrong = Wrong::kOther; });
 }
 
+void Explanation::setExplainedAside(std::vector<Accused>& accused) {
+  std::map<std::size_t, Accused*> late;
+  std::vector<Accused*> least_first;
+  for (Accused& each : accused) {
+    late[each.component] = &each;
+    if (each.wrong == Wrong::kLate) {
+      least_first.push_back(&each);
+    }
+  }
+  std::stable_sort(least_first.begin(), least_first.end(),
+                   [](const Accused* a, const Accused* b) { return a->sum < b->sum; });
+  for (Accused* const victim : least_first) {
+    const auto explains = [&](std::size_t component) {
+      const auto cause = late.find(component);
+      return cause != late.end() && cause->second->wrong < Wrong::kOther &&
+             (cause->second->wrong < Wrong::kLate ||
+              cause->second->after.size() > cause->second->after.count(victim->component));
+    };
+    if (std::all_of(victim->after.begin(), victim->after.end(), explains)) {
+      victim->wrong = Wrong::kOther;
+    }
+  }
+}
+
 std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accused,
                                                      const Window& window) const {
   accused.erase(std::remove_if(accused.begin(), accused.end(),
                                [](const Accused& each) { return each.main == nullptr; }),
                 accused.end());
   setUnlikelyAside(accused, window);
+  setExplainedAside(accused);
   std::stable_sort(accused.begin(), accused.end(), [](const Accused& a, const Accused& b) {
     const auto of = [](const Accused& each) {
       return each.wrong == Wrong::kAbsent
