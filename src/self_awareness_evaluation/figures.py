@@ -86,6 +86,8 @@ class Found:
             name a guilty one first, or among the first three, and the number of all of them.
         at_end: likewise of what stands when the fault ends, whom it blames: a guilty one, or
             nobody where nobody is guilty.
+        bystanders: of the alarms of which it is known, those that name who has nothing to do with
+            the fault, and the number of all of them.
         noticed_s: to the first suspicion or alarm [s], likewise.
         stood_before: records in which a false alarm stood at the onset.
         after: alarms for who was back already, and the number of records with somebody who was.
@@ -95,6 +97,7 @@ class Found:
     first: Tuple[int, int]
     among_three: Tuple[int, int]
     at_end: Tuple[int, int]
+    bystanders: Tuple[int, int]
     noticed_s: Tuple[float, ...]
     stood_before: int
     after: Tuple[int, int]
@@ -108,6 +111,7 @@ class Found:
             tuple(_or_never(row.latency_s) for row in known), _counted(row.first for row in known),
             _counted(row.among_three for row in known),
             _counted(row.right_at_end for row in known),
+            _counted(None if row.bystanders is None else row.bystanders > 0 for row in known),
             tuple(_or_never(row.noticed_s) for row in known),
             sum(row.stood_before for row in known), (sum(after), len(after)))
 
@@ -201,6 +205,7 @@ def _of_kind(found: Found) -> Dict[str, Any]:
             **{f'within {seconds:g} s': found.share(seconds) for seconds in WITHIN_S},
             'median_s': found.median_s, 'first': _part(found.first),
             'among_three': _part(found.among_three), 'at_end': _part(found.at_end),
+            'bystanders': found.bystanders[0],
             'stood_before': found.stood_before, 'alarms_after': found.after[0]}
 
 

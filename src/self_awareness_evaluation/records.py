@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable, Iterable, Optional, Sequence, Set, Tuple
+from typing import Callable, FrozenSet, Iterable, Optional, Sequence, Set, Tuple
 
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
@@ -23,6 +23,8 @@ class FaultRecord:
         recording: the events.
         onset: of the fault [ns].
         back: when it is over [ns]; None: it lasts to the end of the recording.
+        involved: the culprits, and who may suffer from them; None: nobody is guilty, or it is not
+            known.
     """
 
     kind: str
@@ -30,6 +32,7 @@ class FaultRecord:
     recording: WindowedEvents
     onset: int
     back: Optional[int] = None
+    involved: Optional[FrozenSet[str]] = None
 
     @property
     def ends(self) -> int:

@@ -63,6 +63,8 @@ class Row:
         noticed_s: to the first suspicion or alarm; None: none, or one stood at the onset.
         first, among_three: whether that alarm names a guilty one first, or among the first three;
             None: no such alarm, nobody is guilty, or the system names nobody.
+        bystanders: how many it names that have nothing to do with the fault; None: no such alarm,
+            or who is involved is not known.
         level: of what stands when the fault ends, ALARM or SUSPICION; empty: nothing does.
         culprit, kind: who is to blame by then, and what is wrong; empty: nobody, or not known.
         excused: whether that is no node's fault (systems.EXCUSES).
@@ -89,6 +91,7 @@ class Row:
     noticed_s: Optional[float] = None
     first: Optional[bool] = None
     among_three: Optional[bool] = None
+    bystanders: Optional[int] = None
     level: str = ''
     culprit: str = ''
     kind: str = ''
@@ -129,7 +132,7 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged,
         stood_before=any(each.stands_at(onset) for each in judged.alarms),
         latency_s=None if alarm is None else (alarm.start - onset) / SECOND_NS,
         noticed_s=_noticed_s(judged, onset), first=_names(alarm, record, 1),
-        among_three=_names(alarm, record, 3))
+        among_three=_names(alarm, record, 3), bystanders=_bystanders(alarm, record))
     return at_end(row, [*judged.alarms, *judged.suspicions], onset, record.ends)
 
 
@@ -206,6 +209,12 @@ def _names(alarm: Optional[SystemAlarm], record: FaultRecord, among: int) -> Opt
     if alarm is None or alarm.suspects is None or not record.culprits:
         return None
     return bool(set(alarm.suspects[:among]) & set(record.culprits))
+
+
+def _bystanders(alarm: Optional[SystemAlarm], record: FaultRecord) -> Optional[int]:
+    if alarm is None or alarm.suspects is None or record.involved is None:
+        return None
+    return len(set(alarm.suspects) - record.involved)
 
 
 def _hours(windows: np.ndarray) -> float:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Iterator, List, Optional, Sequence, Set, Tuple
+from typing import FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.robot import (AFTER_CRASH, CRASH, HALF_RATE, LATE,
                                                       LONGEST_START_S, MISSES, RESTART, SILENT,
-                                                      STARVED, STOP, Fault, Robot)
+                                                      SLOWER, STARVED, STOP, Fault, Robot)
 from self_awareness_evaluation.records import FaultRecord, Learning
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
@@ -20,7 +20,8 @@ DEATH = 'death'
 SELDOM = 'seldom'
 """The crash of a component that speaks when something happens, and answers to nobody."""
 
-KINDS = (CRASH, HALF_RATE, LATE, DEATH, MISSES, STARVED, SILENT, SELDOM, RESTART, *AFTER_CRASH)
+KINDS = (CRASH, HALF_RATE, LATE, DEATH, MISSES, STARVED, SILENT, SELDOM, RESTART, *AFTER_CRASH,
+         SLOWER)
 """Kinds of faults as they are told apart in the results."""
 
 WATCHED_S = 1800.0
@@ -140,6 +141,7 @@ class Records:
                DEATH: [source for source in answering if source not in regular],
                MISSES: [source for source in regular if source in answering],
                STARVED: [''], SILENT: [''], SELDOM: self.robot.seldom, RESTART: regular,
+               SLOWER: regular,
                **{kind: regular[first::len(AFTER_CRASH)]
                   for first, kind in enumerate(AFTER_CRASH)}}
         number = 0
@@ -176,7 +178,14 @@ class Records:
         onset = (int(missing[0]) if kind == DEATH
                  else recording.end - nanoseconds(seconds) + nanoseconds(onset_s))
         yield FaultRecord(kind, (source,) if source else (), recording, onset,
-                          onset + nanoseconds(RESTARTS_IN_S) if kind == RESTART else None)
+                          onset + nanoseconds(RESTARTS_IN_S) if kind == RESTART else None,
+                          self._involved(kind, source))
+
+    def _involved(self, kind: str, source: str) -> Optional[FrozenSet[str]]:
+        """Return who may suffer from a fault of a component alone."""
+        if not source or kind in AFTER_CRASH:
+            return None
+        return frozenset(self.robot.reached_by(source))
 
     def _lasts(self, kind: str, source: str, number: int, after_death_s: float) -> float:
         """Return for how long a recording with a fault goes on after the onset [s]."""

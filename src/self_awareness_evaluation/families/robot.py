@@ -23,8 +23,13 @@ STALL, LOAD, STOP = 'stall after a crash', 'load after a crash', 'stop after a c
 
 AFTER_CRASH = (STALL, LOAD, STOP)
 
+SLOWER = '0.7 of the rate'
+"""A fault of one component that no gap alone shows."""
+
 STARVED, SILENT = 'starved CPU', 'everything silent'
 """The kinds of faults of the whole robot."""
+
+SLOWER_RATE = 0.7
 
 LATE_S = 0.06
 
@@ -52,10 +57,11 @@ class Fault:
         kind: CRASH: it is silent. STALL: it is, and later the host stands still for 2 s. LOAD:
             instead, all messages wait for 2 s. STOP: instead, others that do not hear it or each
             other are silent, too. RESTART: it is silent, too; after the relief its timers have
-            other phases. HALF_RATE: it leaves out every second message. LATE: its answers to
-            others come LATE_S later. MISSES: it answers nothing for a second, now and then.
-            What answers to it suffers as it would. STARVED: all messages wait, longer and longer
-            within 20 s. SILENT: nobody sends.
+            other phases. HALF_RATE: it leaves out every second message. SLOWER: its timers are
+            slower, and it leaves out some answers. LATE: its answers to others come LATE_S later.
+            MISSES: it answers nothing for a second, now and then. What answers to it suffers as
+            it would. STARVED: all messages wait, longer and longer within 20 s. SILENT: nobody
+            sends.
         source: the component; empty: the robot.
         onset_s: from the beginning of the recording [s].
         relief_s: from there on all is well again [s].
@@ -154,11 +160,15 @@ class Robot:
         graph = self.graph
         chosen = [source]
         for other in self.regular:
-            needing = _needing(other, graph)
-            if len(chosen) <= most and not any(each in needing or other in _needing(each, graph)
-                                               for each in chosen):
+            reached = _reached_by(other, graph)
+            if len(chosen) <= most and not any(
+                    each in reached or other in _reached_by(each, graph) for each in chosen):
                 chosen.append(other)
         return tuple(chosen[1:])
+
+    def reached_by(self, source: str) -> Set[str]:
+        """Return a component, and those that its messages reach, whoever passes them on."""
+        return _reached_by(source, self.graph)
 
     def in_mode(self, on: bool) -> Robot:
         """Return the robot in all of its activities, for ever, or in none of them."""
@@ -206,7 +216,7 @@ class Robot:
     def _check(self, fault: Fault) -> None:
         of_robot = fault.kind in (STARVED, SILENT)
         if not of_robot and fault.kind not in (
-                CRASH, HALF_RATE, LATE, MISSES, RESTART, *AFTER_CRASH):
+                CRASH, HALF_RATE, SLOWER, LATE, MISSES, RESTART, *AFTER_CRASH):
             raise ValueError(f'{fault.kind}: no such kind of fault')
         if fault.source not in ({''} if of_robot else {output.source for output in self.outputs}):
             raise ValueError(f'{fault.source}: no such component')
@@ -250,8 +260,13 @@ class Robot:
             return times[~(hit & _missed(times, scene, fault))]
         if fault.kind == LATE:
             return in_order(times + LATE_S * hit) if self._answers_others(output) else times
+        if fault.kind == SLOWER and output.emission.trigger is None:
+            onset = begin_s + fault.onset_s
+            slow = onset + (times[hit] - onset) / SLOWER_RATE
+            return np.sort(np.concatenate([times[~hit], slow[slow < begin_s + fault.relief_s]]))
         if output.emission.trigger is None or self._answers_others(output):
-            return times[~hit | (np.arange(len(times)) % 2 == 0)]
+            left = 0.5 if fault.kind == HALF_RATE else SLOWER_RATE
+            return times[~hit | (np.diff(np.floor(np.arange(-1, len(times)) * left)) > 0)]
         return times  # it answers to another output of the component, whose rate is halved
 
     def _heard(self, scene: Scene, index: int, listener: str) -> Tuple[np.ndarray, np.ndarray]:
@@ -286,7 +301,7 @@ class Robot:
                 [each[those] for each, those in zip(attributes, kept)])[order])
 
 
-def _needing(source: str, graph: Set[Tuple[str, str, str]]) -> Set[str]:
+def _reached_by(source: str, graph: Set[Tuple[str, str, str]]) -> Set[str]:
     """Return a component, and those that its messages reach, whoever passes them on."""
     reached = {source}
     while True:

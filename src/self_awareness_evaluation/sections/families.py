@@ -6,7 +6,8 @@ from typing import Dict, List, Sequence
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import DEATH, KINDS, SELDOM
 from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LOAD, MISSES,
-                                                      RESTART, SILENT, STALL, STARVED, STOP)
+                                                      RESTART, SILENT, SLOWER, STALL, STARVED,
+                                                      STOP)
 from self_awareness_evaluation.figures import WITHIN_S, Found, Quiet, grouped, normal, of_fault
 from self_awareness_evaluation.robots import family_of
 from self_awareness_evaluation.rows import Row
@@ -21,8 +22,9 @@ TITLE = 'Robots of other kinds'
 ALL = 'all'
 
 TITLES: Dict[str, str] = {
-    CRASH: 'crashes', HALF_RATE: 'half rate', LATE: 'late answers', DEATH: 'deaths when asked',
-    SELDOM: 'deaths of who speaks seldom', MISSES: 'inputs missed now and then',
+    CRASH: 'crashes', HALF_RATE: 'half rate', SLOWER: '0.7 of the rate',
+    LATE: 'late answers', DEATH: 'deaths when asked', SELDOM: 'deaths of who speaks seldom',
+    MISSES: 'inputs missed now and then',
     STARVED: 'starved CPU', SILENT: 'everything silent', RESTART: 'restarts',
     STALL: 'a stall follows a crash', LOAD: 'load follows a crash',
     STOP: 'others stop after a crash'}
@@ -64,8 +66,11 @@ def _results(by_learning: Dict[str, List[Row]]) -> List[str]:
             body.append([TITLES[kind], *(cell for each in found for cell in (
                 f'{percent(each.share())} ({interval(each)}), {seconds(each.median_s)}',
                 f'{part(each.first)} / {part(each.at_end)}'))])
-    return table(['what', *(cell for learning in by_learning for cell in (
-        f'{started(learning)}: alarm (95 %), median', 'the right node first / at the end'))], body)
+    named = [Found.of(of_fault(rows, '')).bystanders for rows in by_learning.values()]
+    return [*table(['what', *(cell for learning in by_learning for cell in (
+        f'{started(learning)}: alarm (95 %), median', 'the right node first / at the end'))],
+                   body), '', 'Alarms that name a node which has nothing to do with the fault: '
+            + '; '.join(f'{some} of {all_}' for some, all_ in named) + '.']
 
 
 def _of_families(families: Sequence[str], by_learning: Dict[str, List[Row]]) -> List[str]:

@@ -12,8 +12,8 @@ from self_awareness_evaluation.families.emissions import Answer, Feedback, Spora
 from self_awareness_evaluation.families.kinds import DEFAULT, FAMILIES, draw
 from self_awareness_evaluation.families.protocol import DEATH, RESTARTS_IN_S, SELDOM, Records
 from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LOAD, MISSES,
-                                                      RESTART, SILENT, STALL, STARVED, STOP, Fault,
-                                                      Output, Robot)
+                                                      RESTART, SILENT, SLOWER, STALL, STARVED,
+                                                      STOP, Fault, Output, Robot)
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
@@ -180,6 +180,15 @@ def test_half_the_rate_is_that_of_who_answers_too() -> None:
     counts = of_fault(HALF_RATE, '/filter')
     assert counts['/scan'].tolist() == [200, 200, 200]
     assert counts['/path'].tolist() == [200, 100, 200]
+
+
+def test_a_slower_one_sends_seven_of_ten() -> None:
+    counts = of_fault(SLOWER, '/driver')
+    for topic in ('/scan', '/info', '/map', '/path'):
+        assert counts[topic].tolist() == pytest.approx([200, 140, 200], abs=1), topic
+    counts = of_fault(SLOWER, '/filter')
+    assert counts['/scan'].tolist() == [200, 200, 200]
+    assert counts['/path'].tolist() == pytest.approx([200, 140, 200], abs=1)
 
 
 def test_who_misses_inputs_answers_nothing_for_a_second_now_and_then() -> None:

@@ -65,6 +65,14 @@ def test_normal_operation() -> None:
         ('new mode',), 0.4, 3, 4)
 
 
+def test_who_is_named_though_a_fault_does_not_reach_him() -> None:
+    alarms = judged([SystemAlarm(at(80), at(90), True, ['/a', '/b', '/c'])])
+    assert fault_row(SUBJECT, fault_at(70), alarms).bystanders is None
+    found = fault_row(SUBJECT, replace(fault_at(70), involved=frozenset(('/a', '/c'))), alarms)
+    assert found.bystanders == 1
+    assert Found.of([found, row(bystanders=0), row()]).bystanders == (1, 2)
+
+
 def test_a_fault() -> None:
     alarms = [SystemAlarm(at(60), at(62), True, ['/a'], 'pairs'),
               SystemAlarm(at(80), at(90), True, ['/b', '/a'])]

@@ -63,7 +63,7 @@ def test_the_families() -> None:
     research = section.pages[RESEARCH]
     for name in ('timers', 'all'):
         assert (f'| {name} | {told} | 0.3 % | 6 | 33 / 67 / 67 %, first 50 %, end 100 % | – '
-                '| 100 %, 0.10 s, first 100 %, end 100 % | – | – | – | – | – | – | – | – '
+                '| 100 %, 0.10 s, first 100 %, end 100 % | – | – | – | – | – | – | – | – | – '
                 '| 3 after 2 | – of – | answers 12 |') in research
     pooled = [line for line in research if line.startswith('| evidence | 2 starts | –')]
     assert pooled and f'| {told} | 0.38 | 50 % | 6 |' in pooled[0]
@@ -71,6 +71,7 @@ def test_the_families() -> None:
     results = section.pages[RESULTS]
     assert f'| false alarms an hour (95 %) | {told} | – |' in results
     assert '| crashes | 66.7 % (21 to 94 %), 4.00 s | 50 % / 100 % |' in results
+    assert results[-1] == 'Alarms that name a node which has nothing to do with the fault: 0 of 0.'
 
 
 def of_case(fault: str, system: str = 'evidence', **more: Any) -> Row:
