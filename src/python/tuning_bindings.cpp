@@ -86,8 +86,6 @@ void bindTuning(py::module& m) {
           py::arg("channel"), "Switches a channel off. ValueError if there is none of this name.")
       .def("least_effect_on_delay", &Tuning::leastEffectOnDelay, py::arg("period"),
            "on the delay after an event type with this mean gap [ns], in ns")
-      .def("least_effect_on_gap", &Tuning::leastEffectOnGap, py::arg("period"),
-           "on the gaps of an event type with this mean gap [ns], in ns")
       .def(py::self == py::self)
       .def(py::pickle(&stateOf, &fromState));
 }

@@ -77,7 +77,7 @@ class ToyChannelTest : public testing::Test {
   ToyChannelTest() {
     // The gaps would find a burst, too.
     Tuning tuning;
-    tuning.without = {kOwnGaps};
+    tuning.without = {kSlower, kFaster};
     ros1::saveModel(trained(tuning), file("robot.model"));
     model_ = ros1::loadModel(file("robot.model"));
     bursts_ = indexOf(model_.watched.tracks, kBursts, kA, kA);

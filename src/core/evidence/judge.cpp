@@ -80,10 +80,8 @@ class Judge : public core::Judge {
   void restart() override;
 
  private:
-  /// Takes back that there are too few events, in a window that ended with the recording.
-  void leaveOutFewer(std::vector<double>& evidence) const;
   /// Finds the shares of a window by the evidence, without what is not judged now.
-  void weigh(const Window& window, std::int64_t end, std::vector<double>& evidence);
+  void weigh(const Window& window, std::vector<double>& evidence);
   /// Finds what is unusual, and excuses what is no fault of the component. Takes back the shares
   /// of what is normal, and tells what is left of them, but for a mode that training never saw.
   void excuse(const Window& window, std::int64_t end, Judgement& judgement);
@@ -185,14 +183,6 @@ void Judge::restart() {
   excesses_.restart();
 }
 
-void Judge::leaveOutFewer(std::vector<double>& evidence) const {
-  for (std::size_t track = 0; track < evidence.size(); ++track) {
-    if (model_->finding(track) == Finding::kFewer) {
-      evidence[track] = 0;
-    }
-  }
-}
-
 Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects suspects) {
   Judgement judgement;
   settling_.forgetStarts(window.start, scorer_);
@@ -201,7 +191,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     return judgement;
   }
   excuseBySenders(window);
-  weigh(window, end, evidence);
+  weigh(window, evidence);
   never_heard_.closeWindow(end, settle_time_);
   unsubscribed_.closeWindow(end);
   excuse(window, end, judgement);
@@ -240,10 +230,7 @@ void Judge::excuseBySenders(const Window& window) {
   }
 }
 
-void Judge::weigh(const Window& window, std::int64_t end, std::vector<double>& evidence) {
-  if (end < window.start + window_) {
-    leaveOutFewer(evidence);
-  }
+void Judge::weigh(const Window& window, std::vector<double>& evidence) {
   settling_.leaveOut(window.start, evidence);
   accepted_.leaveOut(scorer_.heard(), evidence);
   for (std::size_t track = 0; track < evidence.size(); ++track) {

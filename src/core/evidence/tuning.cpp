@@ -12,8 +12,6 @@ const std::vector<TuningNumber>& tuningNumbers() {
        "Gaps that an event type needs to be judged.", std::nullopt},
       {"fewest_delays_of_pair", &Tuning::fewest_delays_of_pair, 1, 1e6, "",
        "Delays in training that a watched pair of event types needs.", std::nullopt},
-      {"least_rate", &Tuning::least_rate, 0, 1e6, "",
-       "Events in the last 2 s, on average, from which on a rate is judged.", std::nullopt},
       {"predecessors", &Tuning::predecessors, 0, 1000, "",
        "Event types after which the delays of another one are watched, at most.", 0},
       {"deadlines", &Tuning::deadlines, 0, 1000, "",
@@ -47,6 +45,10 @@ const std::vector<TuningNumber>& tuningNumbers() {
        0},
       {"fewest_of_broadcast", &Tuning::fewest_of_broadcast, 1, 1e6, "",
        "Nodes that hear a topic from which on it may be for everybody.", std::nullopt},
+      {"least_told", &Tuning::least_told, 0, 1e6, "nat",
+       "How much the gaps of training speak against another pace, for it to be watched.", 0},
+      {"least_pace", &Tuning::least_pace, 1e-3, 1e3, "nat", "Least limit of another pace.",
+       std::nullopt},
       {"most_surprise", &Tuning::most_surprise, 0.1, 1e3, "deviations",
        "The most that one delay can say.", std::nullopt},
       {"least_deviation", &Tuning::least_deviation, 1e-3, 1e3, "nat",
@@ -57,16 +59,10 @@ const std::vector<TuningNumber>& tuningNumbers() {
        std::nullopt},
       {"least_effect_of_period", &Tuning::least_effect_of_period, 0, 0.99, "",
        "The same as a share of the period.", std::nullopt},
-      {"effect_on_gaps", &Tuning::effect_on_gaps, 0, 1e3, "",
-       "Times as much is no fault of a gap.", std::nullopt},
-      {"effect_on_gaps_of_period", &Tuning::effect_on_gaps_of_period, 0, 1e3, "",
-       "Times as large a share of the period is no fault of a gap.", std::nullopt},
       {"drift", &Tuning::drift, 0, 100, "deviations",
        "What every delay takes from the sum of those before.", std::nullopt},
       {"slow_change", &Tuning::slow_change, 1e-3, 1e9, "s",
        "Time in which a load that changes slowly, or a phase that drifts, shows.", 1e9},
-      {"most_behind", &Tuning::most_behind, 0, 1e3, "mean gaps",
-       "How far a type may be behind and catch up.", 0},
       {"most_of_limit", &Tuning::most_of_limit, 1, 1e9, "", "Times its limit at which a sum ends.",
        std::nullopt},
       {"arming_events", &Tuning::arming_events, 1, 1e6, "",
@@ -77,8 +73,6 @@ const std::vector<TuningNumber>& tuningNumbers() {
        "After so long a gap a component was restarted.", 1e9},
       {"accept_after", &Tuning::accept_after, 1e-3, 1e9, "s",
        "A relation that is different for so long has changed for good.", 1e9},
-      {"least_rate_effect", &Tuning::least_rate_effect, 0, 1, "",
-       "Share by which a rate may change without a fault.", std::nullopt},
       {"start_time", &Tuning::start_time, 0, 1e9, "s",
        "Time after the start in which answers are not owed by who was not heard yet.",
        std::nullopt},
@@ -143,8 +137,6 @@ const std::vector<TuningNumber>& tuningNumbers() {
        "Times its longest pause that a recording must last to tell how long pauses get.", 1},
       {"most_of_training", &Tuning::most_of_training, 1e-3, 1e6, "",
        "Times its length in which training alone promises one false alarm.", std::nullopt},
-      {"least_rate_limit", &Tuning::least_rate_limit, 0, 1e3, "spreads", "Least limit of a rate.",
-       std::nullopt},
       {"least_deadline", &Tuning::least_deadline, 0, 1e6, "s", "Least limit of an owed answer.",
        std::nullopt},
       {"least_requests", &Tuning::least_requests, 0, 1e6, "requests",
@@ -209,11 +201,6 @@ void Tuning::validate() const {
 
 double Tuning::leastEffectOnDelay(double period) const {
   return std::max(least_effect * 1e9, least_effect_of_period * period);
-}
-
-double Tuning::leastEffectOnGap(double period) const {
-  return std::max(effect_on_gaps * least_effect * 1e9,
-                  effect_on_gaps_of_period * least_effect_of_period * period);
 }
 
 bool operator==(const Tuning& a, const Tuning& b) {

@@ -22,6 +22,7 @@ GONE, ENDED, NEW, RATE, GAP, DELAY = 'gone', 'ended', 'new', 'rate', 'gap', 'del
 FEWEST_OF_HALF = 25
 """Delays are not compared if a half of a side has fewer."""
 
+_LEAST_OF_RATE, _LEAST_OF_PERIOD, _LEAST_OF_GAP_S = 0.04, 0.2, 0.01  # changes that matter
 _CLEARLY_LONGER = 3
 _LEAST_END_S = 1.0
 _SPAN_S = RATE_SPAN / SECOND_NS
@@ -157,8 +158,7 @@ def _significant(candidates: Sequence[_Candidate], level: float, common: float) 
 
 def _rate(before: Side, after: Side, kind: Kind) -> _Candidate:
     first, second = _measured_rate(before, kind), _measured_rate(after, kind)
-    effect = abs(math.log(second.value / first.value)) / math.log1p(
-        before.model.tuning.get('least_rate_effect'))
+    effect = abs(math.log(second.value / first.value)) / math.log1p(_LEAST_OF_RATE)
     return _Candidate(Change(RATE, kind, None, first.value, second.value, effect), first, second)
 
 
@@ -197,9 +197,8 @@ def _shift(what: str, before: Side, after: Side, pair: Tuple[Kind, Kind],
     if len(edges) < 2:
         return None
     period = SECOND_NS * before.duration / before.all.events(pairs[0][0])
-    effect = before.model.tuning
-    least = (effect.least_effect_on_gap(period) if what == GAP
-             else effect.least_effect_on_delay(period))
+    least = (max(_LEAST_OF_GAP_S * SECOND_NS, _LEAST_OF_PERIOD * period) if what == GAP
+             else before.model.tuning.least_effect_on_delay(period))
     change = Change(what, pair[1], None if what == GAP else pair[0], first, second,
                     SECOND_NS * abs(second - first) / max(least, 1.0))
     return _Candidate(change, *(_measured_share(side, ids, edges[len(edges) // 2])

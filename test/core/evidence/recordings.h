@@ -150,6 +150,12 @@ inline Statistics startOf(const Events& events, std::int64_t number,
   return countsOf({later(events, number * kStart)}, types);
 }
 
+/// What is watched of two halves, though few gaps tell little of a pace.
+inline Watched watchAll(const Statistics& first, const Statistics& second, Tuning tuning = {}) {
+  tuning.least_told = 0;
+  return watch(first, second, {}, tuning);
+}
+
 /// Partners of an event type.
 inline Partners partnersOf(std::initializer_list<Partner> all) {
   Partners partners;
@@ -161,9 +167,8 @@ inline Partners partnersOf(std::initializer_list<Partner> all) {
 
 /// Names of the channels.
 constexpr const char* kOverdue = "overdue";
-constexpr const char* kFewer = "fewer";
-constexpr const char* kMore = "more";
-constexpr const char* kOwnGaps = "own gaps";
+constexpr const char* kSlower = "slower";
+constexpr const char* kFaster = "faster";
 constexpr const char* kPairs = "pairs";
 constexpr const char* kDeadlines = "deadlines";
 constexpr const char* kCompany = "company";

@@ -102,9 +102,6 @@ TEST(EvidenceTuning, ALeastEffectIsTheLargerOfTimeAndShare) {
   tuning.least_effect_of_period = 0.03;
   EXPECT_DOUBLE_EQ(tuning.leastEffectOnDelay(100e6), 10e6);
   EXPECT_DOUBLE_EQ(tuning.leastEffectOnDelay(1e9), 30e6);
-  // Both ends of a gap move.
-  EXPECT_DOUBLE_EQ(tuning.leastEffectOnGap(50e6), 20e6);
-  EXPECT_DOUBLE_EQ(tuning.leastEffectOnGap(1e9), 300e6);
 }
 
 TEST(EvidenceTuning, AChannelThatIsSwitchedOffIsNotWatched) {

@@ -58,8 +58,8 @@ def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
     found = as_json(capsys, evidence_model)['evidence']
     model = TrainedModel.load(evidence_model)
     stored = model.calibration
-    assert set(found['tracks']) <= {'overdue', 'rate', 'pairs', 'deadlines', 'size'}
-    assert found['tracks']['overdue'] == 3 and found['tracks']['rate'] == 6
+    assert set(found['tracks']) <= {'overdue', 'pace', 'pairs', 'deadlines', 'size'}
+    assert found['tracks']['overdue'] == 3 and found['tracks']['pace'] == 6
     assert sum(found['tracks'].values()) == len(EvidenceModel(model).tracks)
     assert found['not_judged'] == []
     assert found['tuning'] == {each.name: each.default for each in Tuning.numbers()}
@@ -148,7 +148,7 @@ def test_too_rare_is_what_has_fewer_gaps_than_the_model_asks_for(long_bags, tmp_
 def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
     assert info.main([evidence_model]) == 0
     text = capsys.readouterr().out
-    for part in ('evidence     watches: overdue 3, rate 6',
+    for part in ('evidence     watches: overdue 3, pace 6',
                  'limits       of recordings that were not trained on, for 0.5 false',
                  'graph        none', 'tuesday.bag'):
         assert part in text

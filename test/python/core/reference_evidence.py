@@ -17,8 +17,8 @@ SECOND = 10 ** 9
 MS = 10 ** 6
 EDGES = [round(2.5e6 * 2.0 ** (k / 4)) for k in range(49)]
 BINS = 50
-LABELS = {'overdue': 'overdue', 'fewer': 'rate', 'more': 'rate', 'own gaps': 'pairs',
-          'pairs': 'pairs', 'deadlines': 'deadlines', 'company': 'company'}
+LABELS = {'overdue': 'overdue', 'slower': 'pace', 'faster': 'pace', 'pairs': 'pairs',
+          'deadlines': 'deadlines', 'company': 'company'}
 """What people call the channels."""
 
 RARE_MISSES = 0.02
@@ -28,9 +28,10 @@ LEAST_DEVIATION = 0.5
 USUAL = 0.9
 LEAST_EFFECT = (5e6, 0.02)
 """On delays, by default: [ns], and the share of the period."""
-GAPS_TO_DELAYS = (2.0, 10.0)
-"""Least effects on gaps, in those on delays."""
-LEAST_RATE_EFFECT = 0.04
+LEAST_PACE = 8.0
+OTHER_PACES = {'slower': {2: 1 / 2, 4: 1 / 2},
+               'faster': {2: 1 / 3, 4: 1 / 3, **{bins: 1 / 60 for bins in range(5, 25)}}}
+"""Their shares, by how many bins gaps are longer or shorter."""
 LONGEST_GAP_OF_SERIES = 2 * SECOND
 SHORTEST_STALL = 50 * MS
 LONGEST_STALL_OF_TRAINING = 2 * SECOND
@@ -272,7 +273,9 @@ class ReferenceModel:
         self.longest_stall = max(seen.longest_stall for seen in both.recordings)
         self._gaps = {kind: self._binned(both.gaps[kind]) for kind in self.types}
         self._surprises = {track: self._standardised(track[2], track[1])
-                           for track in tracks if LABELS[track[0]] == 'pairs'}
+                           for track in tracks if track[0] == 'pairs'}
+        self._steps = {track: self._steps_of(track) for track in tracks
+                       if LABELS[track[0]] == 'pace'}
 
     def _standardised(self, e_i: str, e_j: str) -> List[float]:
         first, second = (half.delays[e_i, e_j] for half in self._halves)
@@ -288,11 +291,11 @@ class ReferenceModel:
                      for log in log_probabilities(self.both.delays[e_i, e_j])]
         period = self.both.mean_gap(e_i)
         shortest, longest = self._harmless(e_i, e_j)
-        shifts = (0.0, period, -period) if e_i != e_j else (0.0,)
+        shifts = (0.0, period, -period)
         harmless = {index for index in range(BINS) for shift in shifts
                     if lower_edge(index) + shift >= shortest
                     and lower_edge(index + 1) + shift <= longest}
-        if e_i != e_j and shortest <= 0.0:  # and so is the bin that a period lies in
+        if shortest <= 0.0:  # and so is the bin that a period lies in
             harmless |= {index for index in range(BINS)
                          if lower_edge(index) < period <= lower_edge(index + 1)}
         return [min(surprise, 0.0) if index in harmless else surprise
@@ -301,8 +304,7 @@ class ReferenceModel:
     def _harmless(self, e_i: str, e_j: str) -> Tuple[float, float]:
         """Return the shortest and the longest delay that differ by little from the usual ones."""
         bins = self.both.delays[e_i, e_j]
-        in_ns, of_period = (effect * (times if e_i == e_j else 1.0)
-                            for effect, times in zip(self._least_effect, GAPS_TO_DELAYS))
+        in_ns, of_period = self._least_effect
         effect = max(in_ns, of_period * self.both.mean_gap(e_i))
         first, last = usual_bins(bins)
         return lower_edge(first) - effect, lower_edge(last + 1) + effect
@@ -324,13 +326,27 @@ class ReferenceModel:
         return -math.log((left + longest * math.exp(-age / longest))
                          / (math.fsum(gaps) + longest))
 
-    def rate(self, kind: str, count: float) -> float:
-        """Return how many spreads more than usual came in 2 s."""
-        counts = self.both.rates[kind]
-        mean = sum(counts) / max(len(counts), 1)
-        variance = sum((n - mean) ** 2 for n in counts) / max(len(counts), 1)
-        drift = LEAST_RATE_EFFECT * mean
-        return (count - mean) / math.sqrt(variance + min(1.0, mean / 4) + 0.25 + drift ** 2)
+    def _steps_of(self, track: Track) -> List[float]:
+        """Return what a gap of every bin adds to the sum of another pace [nat]."""
+        channel, kind, _ = track
+        gaps = self.both.delays[kind, kind]
+        found = [(gaps.count(index) + 1) / (len(gaps) + BINS) for index in range(BINS)]
+
+        def moved(by: int, shares: Sequence[float]) -> List[float]:
+            to = [min(max(index + by, 0), BINS - 1) for index in range(BINS)]
+            return [math.fsum(share for share, place in zip(shares, to) if place == index)
+                    for index in range(BINS)]
+
+        usual = [(2 * here + longer + shorter) / 4
+                 for here, longer, shorter in zip(found, moved(1, found), moved(-1, found))]
+        others = [[share * each for each in moved(by if channel == 'slower' else -by, usual)]
+                  for by, share in OTHER_PACES[channel].items()]
+        return [min(math.log(0.5 + 0.5 * math.fsum(shares) / share), LEAST_PACE / 2)
+                for share, *shares in zip(usual, *others)]
+
+    def step(self, track: Track, gap: int) -> float:
+        """Return what a gap adds to the sum of another pace [nat]."""
+        return self._steps[track][log_bin(gap)]
 
     def surprise(self, track: Track, delay: int) -> float:
         """Return how unusual a delay is [standard deviations]."""
@@ -338,7 +354,7 @@ class ReferenceModel:
         surprise = self._surprises[track][log_bin(delay)]
         period = self.both.mean_gap(e_i)
         shortest, longest = self._harmless(e_i, e_j)
-        shifts = (0.0, period, -period) if e_i != e_j else (0.0,)
+        shifts = (0.0, period, -period)
         harmless = any(shortest <= delay + shift <= longest for shift in shifts)
         return 0.0 if surprise > 0.5 and harmless else surprise
 
@@ -361,4 +377,4 @@ class ReferenceModel:
         if label == 'company':
             gap = 1.0 if is_mode(track[2]) else self.both.usual_delay(track[2], track[2], 0.5)
             return max(3.0, 0.5 / gap) if gap > 0 else 3.0
-        return 2 * MOST_SURPRISE + 1 if label == 'pairs' else 3.0
+        return 2 * MOST_SURPRISE + 1 if label == 'pairs' else LEAST_PACE

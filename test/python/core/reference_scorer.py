@@ -13,8 +13,6 @@ ARMING_EVENTS = 30
 MOST_FAILURES = 10
 USUAL_SURPRISE = 0.3
 GONE_GAPS = 5
-MOST_BEHIND = 3.0
-"""Mean gaps."""
 MOST_EVIDENCE = 200.0
 MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
@@ -58,6 +56,7 @@ class Watch:
         self.sum = 0.0
         self.arming = Arming()
         self.regime = 0.0
+        self.behind = 0.0  # [ns]
         self.abnormal_since: Optional[int] = None
         self.abnormal_windows = 0
 
@@ -98,13 +97,10 @@ class ReferenceScorer:
         self._caps = {track: MOST_OF_LIMIT * limit
                       for track, limit in zip(model.tracks, limits) if limit > 0.0}
         self._last: Dict[str, Tuple[int, int]] = {}  # stamp and number of the event
-        self._first_stamps: Dict[str, int] = {}
-        self._behind: Dict[str, float] = defaultdict(float)  # [ns]
-        self._in_window: Dict[str, List[int]] = defaultdict(list)
         self._requests: Dict[Track, List[int]] = defaultdict(list)  # without an answer
         self._told: List[Tuple[int, str]] = []  # modes
         self._watches = {track: Watch(self._caps.get(track, MOST_EVIDENCE))
-                         for track in model.tracks if LABELS[track[0]] == 'pairs'}
+                         for track in model.tracks if LABELS[track[0]] in ('pairs', 'pace')}
         self._usual_silence = max(model.longest_silence * 5 // 4, SHORTEST_STALL)
         self._longest_stall = max(LONGEST_STALL, min(model.longest_stall * 5 // 4,
                                                      LONGEST_STALL_OF_TRAINING))
@@ -114,7 +110,7 @@ class ReferenceScorer:
         self.stalls = 0
         self.failed = 0
         self.rows: List[List[float]] = []
-        self._first = index = events[0][0] // window
+        index = events[0][0] // window
         for number, (t, kind) in enumerate(events):
             while (index + 1) * window <= t:
                 self.rows.append(self._row(index))
@@ -127,8 +123,6 @@ class ReferenceScorer:
                     continue
                 self._add(t, kind)
                 self._last[kind] = (t, number)
-                self._first_stamps.setdefault(kind, t)
-                self._in_window[kind].append(index)
         self.rows.append(self._row(index))
 
     def _note_stall(self, t: int) -> None:
@@ -148,10 +142,11 @@ class ReferenceScorer:
 
     def _add(self, t: int, kind: str) -> None:
         own = self._last.get(kind)
-        catches_up = own is not None and self._catches_up(t - own[0], kind)
         for track, watch in self._watches.items():
-            if track[1] == kind:
-                self._add_delay(watch, t, track, catches_up)
+            if track[1] == kind and track[0] == 'pairs':
+                self._add_delay(watch, t, track)
+            elif track[1] == kind and own is not None:
+                self._add_gap(watch, t - own[0], track, self._has_waited(t))
         for track in self._model.tracks:
             if track[0] in ('deadlines', 'company'):
                 if track[1] == kind:
@@ -163,30 +158,32 @@ class ReferenceScorer:
                 if kind in track[1:]:
                     watch.disarm()
 
-    def _catches_up(self, gap: int, kind: str) -> bool:
-        """Return whether a gap is short because the type was behind its mean gaps."""
-        mean = self._model.both.mean_gap(kind)
-        catches_up = mean - 2 * self._behind[kind] < gap < mean
-        self._behind[kind] = min(max(self._behind[kind] + gap - mean, 0.0), MOST_BEHIND * mean)
-        return catches_up
+    def _add_gap(self, watch: Watch, gap: int, track: Track, waited: bool) -> None:
+        step = self._model.step(track, gap)
+        mean = self._model.both.mean_gap(track[1])
+        catches_up = step > 0.0 and gap < mean and watch.behind > 0.0
+        watch.behind = max(watch.behind + gap - mean, 0.0) if catches_up or gap > mean else 0.0
+        step = 0.0 if catches_up or waited else step
+        watch.add(step)
+        if waited:
+            return
+        if watch.arming.failures == 0:
+            watch.arming.armed = True
+        else:
+            watch.arming.add(step)
 
-    def _add_delay(self, watch: Watch, t: int, track: Track, catches_up: bool) -> None:
-        channel, to, other = track
+    def _add_delay(self, watch: Watch, t: int, track: Track) -> None:
+        _, to, other = track
         own, before = self._last.get(to), self._last.get(other)
         if before is None or (own is not None and before[1] < own[1]):
             return
         surprise = self._model.surprise(track, t - before[0])
         if self._has_waited(t):
             return
-        makes_up = channel == 'own gaps' and catches_up and surprise > 0.0
-        step = surprise - max(watch.regime, 0.0) - DRIFT
-        watch.add(-step if makes_up else step)
+        watch.add(surprise - max(watch.regime, 0.0) - DRIFT)
         elapsed = min(max(t - own[0], 0), REGIME) if own is not None else 0
         watch.regime += (surprise - watch.regime) * elapsed / REGIME
-        if channel == 'own gaps' and watch.arming.failures == 0:
-            watch.arming.armed = True
-        else:
-            watch.arming.add(surprise)
+        watch.arming.add(surprise)
 
     def _fail(self, end: int) -> None:
         for watch in self._watches.values():
@@ -212,7 +209,7 @@ class ReferenceScorer:
         silence = end - self._newest if self._newest is not None else 0
         stall = silence if self._usual_silence < silence <= self._longest_stall else 0
         stalled = stall > 0 or self._has_waited(end - 2 * SECOND)
-        return [self._evidence(track, index, end, stall, stalled)
+        return [self._evidence(track, end, stall, stalled)
                 for track in self._model.tracks]
 
     def _lasted(self, mode: str, since: int, end: int) -> int:
@@ -227,7 +224,7 @@ class ReferenceScorer:
             return self._stall[1] - self._stall[0]
         return stall
 
-    def _evidence(self, track: Track, index: int, end: int, stall: int, stalled: bool) -> float:
+    def _evidence(self, track: Track, end: int, stall: int, stalled: bool) -> float:
         channel, kind, other = track
         last = self._last.get(kind)
         if is_mode(other):
@@ -249,12 +246,5 @@ class ReferenceScorer:
         if channel == 'overdue':
             stood_still = self._stood_still(last[0], stall, stalled)
             return self._model.overdue(kind, max(end - last[0] - stood_still, 0))
-        if channel in ('fewer', 'more'):
-            span = max(2 * SECOND // self._window, 1)
-            if (stalled or index - self._first + 1 < span
-                    or end - self._first_stamps[kind] < 2 * SECOND):
-                return 0.0
-            more = self._model.rate(kind, sum(n > index - span for n in self._in_window[kind]))
-            return max(more if channel == 'more' else -more, 0.0)
         watch = self._watches[track]
         return watch.sum if watch.arming.armed else 0.0

@@ -16,7 +16,6 @@ struct Tuning {
   // What is known well enough to be judged.
   double fewest_gaps = 8;
   double fewest_delays_of_pair = 200;
-  double least_rate = 1.5;
   double predecessors = 2;
   double deadlines = 3;
 
@@ -34,25 +33,23 @@ struct Tuning {
   double least_of_longest = 0.1;
   double fewest_of_broadcast = 4;
 
-  // The evidence of delays.
+  // The evidence of gaps and delays.
+  double least_told = 100;
+  double least_pace = 8;
   double most_surprise = 6;
   double least_deviation = 0.5;
   double usual = 0.9;
   double least_effect = 0.005;
   double least_effect_of_period = 0.02;
-  double effect_on_gaps = 2;
-  double effect_on_gaps_of_period = 10;
   double drift = 1;
   double slow_change = 120;
-  double most_behind = 3;
   double most_of_limit = 1.5;
   double arming_events = 30;
   double usual_surprise = 0.3;
   double gone_gaps = 5;
   double accept_after = 60;
 
-  // Rates, owed answers, and who never came.
-  double least_rate_effect = 0.04;
+  // Who never came.
   double start_time = 60;
   double due_times = 2;
   double alarm_times = 4;
@@ -88,7 +85,6 @@ struct Tuning {
   double prior_pauses = 2;
   double pauses_in_recording = 25;
   double most_of_training = 10;
-  double least_rate_limit = 3;
   double least_deadline = 0.5;
   double least_requests = 3;
   double owed_of_silence = 0.9;
@@ -116,9 +112,6 @@ struct Tuning {
   /// Least effect on the delay from one event type to another [ns] (docs/method.md, section 3.5).
   /// @param period mean gap of the one that the delay counts from [ns]
   double leastEffectOnDelay(double period) const;
-  /// Least effect on the gaps of one event type [ns].
-  /// @param period mean gap of the event type [ns]
-  double leastEffectOnGap(double period) const;
   bool isOn(const std::string& channel) const { return without.count(channel) == 0; }
 };
 

@@ -95,9 +95,6 @@ class Expectation {
   virtual std::unique_ptr<ChannelState> start() const = 0;
   /// Least limit that a track may have, in units of its evidence (docs/method.md, section 5.3).
   virtual double leastLimit(std::size_t track) const = 0;
-  /// Evidence that a normal silence brings by itself, in units of the track's.
-  /// @param age up to which a silence of the later type is normal [ns]
-  virtual double ofSilence(std::size_t /*track*/, double /*age*/) const { return 0; }
   /// How long evidence takes to become so much, at the usual pace of the other event type [ns]; 0:
   /// not known, or there is no other one.
   virtual double timeUntil(std::size_t /*track*/, double /*evidence*/) const { return 0; }

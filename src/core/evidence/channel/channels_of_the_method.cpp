@@ -6,9 +6,8 @@
 #include "core/evidence/channel/frozen.h"
 #include "core/evidence/channel/lost.h"
 #include "core/evidence/channel/owed.h"
-#include "core/evidence/channel/own_gaps.h"
+#include "core/evidence/channel/pace.h"
 #include "core/evidence/channel/pairs.h"
-#include "core/evidence/channel/rate.h"
 #include "core/evidence/channel/silence.h"
 #include "core/evidence/channel/size.h"
 
@@ -16,9 +15,8 @@ namespace self_awareness::core::evidence {
 
 std::vector<const Channel*> channelsOfTheMethod() {
   static const Silence silence;
-  static const Rate fewer(Rate::Side::kFewer);
-  static const Rate more(Rate::Side::kMore);
-  static const OwnGaps own_gaps;
+  static const Pace slower(Pace::Side::kSlower);
+  static const Pace faster(Pace::Side::kFaster);
   static const Pairs pairs;
   static const Owed owed;
   static const Company company;
@@ -26,8 +24,7 @@ std::vector<const Channel*> channelsOfTheMethod() {
   static const Lost lost;
   static const Size size;
   static const Frozen frozen;
-  return {&silence, &fewer, &more, &own_gaps, &pairs, &owed,
-          &company, &age,   &lost, &size,     &frozen};
+  return {&silence, &slower, &faster, &pairs, &owed, &company, &age, &lost, &size, &frozen};
 }
 
 std::string channelName(const Track& track) {

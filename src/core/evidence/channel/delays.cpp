@@ -116,22 +116,9 @@ std::string inWords(double seconds) {
   return text;
 }
 
-/// Whether most gaps of one event type are longer, or shorter: it has another rate.
-bool isOtherRate(const Reason& reason, bool scattered) {
-  return reason.after.empty() && !scattered && reason.value != reason.usual &&
-         2 * reason.times > reason.of;
-}
-
 /// @param scatter of the unusual ones; none: nearly all of them are on one side of the usual one
 std::string inWords(const Reason& reason, std::optional<double> scatter) {
-  if (isOtherRate(reason, scatter.has_value())) {
-    char text[100];
-    std::snprintf(text, sizeof text,
-                  "every %.2g s instead of %.2g s, %zu times in the last %.1f s", reason.value,
-                  reason.usual, reason.times, reason.lasted);
-    return text;
-  }
-  const std::string after = reason.after.empty() ? "" : " after " + reason.after;
+  const std::string after = " after " + reason.after;
   if (reason.times == 0) {
     return "at unusual delays" + after;
   }
@@ -140,8 +127,8 @@ std::string inWords(const Reason& reason, std::optional<double> scatter) {
   std::snprintf(times, sizeof times, " than usual %zu time%s of %zu", reason.times,
                 reason.times == 1 ? "" : "s", reason.of);
   char usual[80];
-  std::snprintf(usual, sizeof usual, " in the last %.1f s, usually %s%.3f s", reason.lasted,
-                reason.after.empty() ? "every " : "", reason.usual);
+  std::snprintf(usual, sizeof usual, " in the last %.1f s, usually %.3f s", reason.lasted,
+                reason.usual);
   return inWords(scatter ? *scatter : std::abs(later)) +
          (scatter     ? " earlier or later"
           : later > 0 ? " later"
@@ -154,12 +141,6 @@ Kind kindOf(const Reason& reason, bool scattered) {
     return Kind::kOutOfOrder;
   }
   const bool later = reason.value > reason.usual;
-  if (isOtherRate(reason, scattered)) {
-    return later ? Kind::kSlow : Kind::kFast;
-  }
-  if (reason.after.empty()) {
-    return Kind::kOutOfOrder;
-  }
   return later ? Kind::kLate : Kind::kEarly;
 }
 
@@ -185,9 +166,8 @@ DelaySurprise::DelaySurprise(const Model& model, const Halves& halves, EventId f
 void DelaySurprise::learnHarmless(const Model& model, EventId from, EventId to) {
   const Tuning& tuning = model.tuning();
   const double period = model.learned().type(from).meanGap();
-  const double effect =
-      from == to ? tuning.leastEffectOnGap(period) : tuning.leastEffectOnDelay(period);
-  period_ = from == to ? 0 : period;  // a gap does not wrap
+  const double effect = tuning.leastEffectOnDelay(period);
+  period_ = period;
   const DelayHistogram::Bins usual = model.learned().delays(from, to).middle(tuning.usual);
   shortest_ = lowerEdge(usual.first) - effect;
   longest_ = upperEdge(usual.last) + effect;

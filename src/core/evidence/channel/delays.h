@@ -12,8 +12,6 @@
 
 namespace self_awareness::core::evidence {
 
-/// What the channels of delays have in common (docs/method.md, section 3.5): OwnGaps and Pairs.
-
 /// How surprising the delays of a track are.
 class DelaySurprise {
  public:
@@ -52,7 +50,6 @@ struct DelayNumbers {
   explicit DelayNumbers(const Tuning& tuning)
       : drift(tuning.drift),
         regime(toNanoseconds(tuning.slow_change)),
-        most_behind(tuning.most_behind),
         most_of_limit(tuning.most_of_limit) {}
 
   /// Share of the regime that a delay makes which comes so long after the one before [ns].
@@ -63,7 +60,6 @@ struct DelayNumbers {
 
   double drift;
   std::int64_t regime;  // [ns]
-  double most_behind;
   double most_of_limit;
 };
 
@@ -81,13 +77,12 @@ struct DelaySum {
   /// Takes in a delay.
   /// @param stamp of the event that it ends with [ns]
   /// @param count 1, or 0 if it does not count
-  /// @param sign -1 if the delay only makes up for one before it, else 1
   /// @param share_of_regime DelayNumbers::shareOfRegime() of the time since the `to` before
   /// @return what was added
-  double add(std::int64_t stamp, double surprise, double count, double sign,
-             double share_of_regime, const DelayNumbers& numbers) {
+  double add(std::int64_t stamp, double surprise, double count, double share_of_regime,
+             const DelayNumbers& numbers) {
     since = value > 0 ? since : stamp;
-    const double step = (surprise - std::max(regime, 0.0) - numbers.drift) * (sign * count);
+    const double step = (surprise - std::max(regime, 0.0) - numbers.drift) * count;
     value = std::max(std::min(value + step, cap), 0.0);
     regime += (surprise - regime) * (share_of_regime * count);
     return step;
@@ -104,22 +99,6 @@ struct DelaySum {
   void clear() {
     value = 0;
     regime = 0;
-  }
-};
-
-/// How far an event type is behind its own mean gaps: whose message waited has a gap that is too
-/// long, and then too short ones.
-struct CatchingUp {
-  double mean_gap = 0;  ///< [ns]
-  double behind = 0;    ///< [ns]
-
-  /// Takes in a gap [ns].
-  /// @return whether it is shorter because the type catches up
-  bool add(double gap, const DelayNumbers& numbers) {
-    const double late = gap - mean_gap;
-    const bool catches_up = late < 0 && -late < 2 * behind;
-    behind = std::clamp(behind + late, 0.0, numbers.most_behind * mean_gap);
-    return catches_up;
   }
 };
 

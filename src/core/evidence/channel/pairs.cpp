@@ -34,7 +34,7 @@ class PairsState : public ChannelState {
       // one pause many times. No branch, since the processor cannot predict which one is first.
       const bool first = numbers[pair.from] >= arrival.last;
       const double surprise = (*pair.surprise)(arrival.stamp - stamps[pair.from]);
-      pair.sum.add(arrival.stamp, surprise, first && !arrival.stalled ? 1.0 : 0.0, 1.0, share,
+      pair.sum.add(arrival.stamp, surprise, first && !arrival.stalled ? 1.0 : 0.0, share,
                    numbers_);
       if (!pair.armed) {
         arm(number, numbers[pair.from] > 0, first && !arrival.stalled, surprise);
@@ -191,7 +191,7 @@ void PairsState::explain(std::size_t track, const Heard& heard, const RecentEven
     if (since) {
       const std::int64_t delay = std::max<std::int64_t>(event.stamp - *since, 0);
       const double step =
-          sum.add(event.stamp, (*pair.surprise)(delay), event.stalled ? 0.0 : 1.0, 1.0,
+          sum.add(event.stamp, (*pair.surprise)(delay), event.stalled ? 0.0 : 1.0,
                   numbers_.shareOfRegime(last ? event.stamp - *last : 0), numbers_);
       seen.push_back({event.stamp, static_cast<double>(delay), step});
       since.reset();

@@ -94,7 +94,6 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
     : model_(model),
       tuning_(model.tuning()),
       window_(window),
-      silent_for_(model.size(), 0),
       limits_(model.tracks().size(), kNone) {
   robots_.add(model.statistics());
   gatherParts(findings);
@@ -274,14 +273,11 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
                                                        tuning_.most_own_margin));
     const double largest = *std::max_element(seen.agreed.begin(), seen.agreed.end());
     const Expectation& expected = model_.expectation(seen.track);
-    double& silent_for = silent_for_[model_.tracks()[seen.track].to];
     const double found =
         std::max({seen.least, own * std::max(largest, tuning_.share_of_least * seen.least),
-                  expected.ofSilence(seen.track, silent_for),
                   kind == Kind::kTimers ? withALoss(seen.track, largest, rate) : 0.0});
     const double most =
         gaps ? longestAge(kind, seen, largest - window(), found - window(), rate) : found;
-    silent_for = gaps ? most : silent_for;
     double& limit = limits_[seen.track];
     limit = expected.limit(seen.track, largest, most);
     if (!std::isnan(limit) && !of_one) {

@@ -104,9 +104,6 @@ class LimitSearch {
   std::vector<GapPart> gap_parts_;
   double longest_recording_ = 0;  // [ns]
   double lost_ = 0;               // share of the messages of timers
-  /// Ages up to which silences are normal [ns], by id; silences are searched first.
-  std::vector<double> silent_for_;
-
   std::vector<double> limits_;
   double rate_ = 0;
 };

@@ -4,12 +4,10 @@ namespace self_awareness::core::evidence {
 
 Heard::Heard(std::size_t types, std::int64_t window, Stalls stalls, const Tuning& tuning)
     : window_(window),
-      counts_(types, rateWindows(window)),
       stalls_(stalls),
       starvation_(tuning),
       longest_stall_(toNanoseconds(tuning.longest_stall)),
       stamps_(types, 0),
-      first_stamps_(types, 0),
       numbers_(types, 0),
       paused_before_(types, 0) {}
 
@@ -26,24 +24,19 @@ void Heard::hear(const Waiting& waiting) {
 }
 
 void Heard::restart() {
-  counts_.restart();
   stalls_.restart();
   starvation_.restart();
   mode_.restart();
   stamps_.assign(stamps_.size(), 0);
-  first_stamps_.assign(stamps_.size(), 0);
   numbers_.assign(stamps_.size(), 0);
   paused_before_.assign(stamps_.size(), 0);
   pause_ = {};
   number_ = 0;
-  rates_valid_ = false;
 }
 
 void Heard::closeWindow(std::int64_t end) {
   window_end_ = end;
-  counts_.close();
   stalls_.closeWindow(end, number_ > 0);
-  rates_valid_ = counts_.full() && !stalls_.disturbsRates(end) && starved() == 0;
 }
 
 }  // namespace self_awareness::core::evidence

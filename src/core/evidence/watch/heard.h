@@ -12,7 +12,6 @@
 #include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/mode.h"
-#include "self_awareness/core/stream/recent_counts.h"
 
 namespace self_awareness::core::evidence {
 
@@ -21,7 +20,7 @@ namespace self_awareness::core::evidence {
 class Heard {
  public:
   /// @param types number of event types
-  /// @param window length [ns] of the windows that rates are counted in
+  /// @param window length [ns]
   /// @param stalls of the robot's machine, and what are none
   Heard(std::size_t types, std::int64_t window, Stalls stalls, const Tuning& tuning);
 
@@ -46,7 +45,6 @@ class Heard {
   void hear(const Waiting& waiting);
   /// Begins to take in an event; the channels see it before end() does.
   Arrival begin(const Event& event) {
-    counts_.add(event.id);
     note(event.stamp);
     const std::uint64_t last = numbers_[event.id];
     return {event.stamp,
@@ -57,9 +55,6 @@ class Heard {
             event.attributes};
   }
   void end(const Arrival& arrival) {
-    if (arrival.last == 0) {
-      first_stamps_[arrival.id] = arrival.stamp;
-    }
     stamps_[arrival.id] = arrival.stamp;
     paused_before_[arrival.id] = arrival.stamp < pause_.to ? pause_.before : pause_.all;
     numbers_[arrival.id] = ++number_;
@@ -127,15 +122,6 @@ class Heard {
   std::int64_t starved() const { return starvation_.waitedIn(0, window_end_); }
   /// Length of a window [ns].
   std::int64_t window() const { return window_; }
-  /// Events of a type in the last kRateSpan; none where that says nothing: since the start, or the
-  /// first event of the type, less time has passed, or the robot stood still.
-  std::optional<std::uint32_t> rate(EventId id) const {
-    // A topic that began within the span has too few for that reason alone.
-    const bool valid = rates_valid_ && hasSeen(id) && window_end_ - first_stamps_[id] >= kRateSpan;
-    return valid ? std::optional<std::uint32_t>(counts_.counts()[id]) : std::nullopt;
-  }
-  /// Events of a type in the last kRateSpan.
-  std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
 
  private:
   /// How long this program stood still.
@@ -154,20 +140,17 @@ class Heard {
   }
 
   std::int64_t window_;  // [ns]
-  RecentCounts counts_;
   Stalls stalls_;
   Starvation starvation_;
   ModeTime mode_;
   std::int64_t longest_stall_;               // that is forgiven [ns]
   std::int64_t start_ = 0;                   // [ns], once there was an event
   std::vector<std::int64_t> stamps_;         // of the last event [ns], by id
-  std::vector<std::int64_t> first_stamps_;   // of the first event since the start [ns], by id
   std::vector<std::uint64_t> numbers_;       // of the last event in the recording, by id; 0: none
   std::vector<std::int64_t> paused_before_;  // of the pauses, those before the last event, by id
   Pause pause_;
   std::uint64_t number_ = 0;
   std::int64_t window_end_ = 0;  // [ns]
-  bool rates_valid_ = false;     // at the end of the last window
 };
 
 }  // namespace self_awareness::core::evidence

@@ -24,8 +24,4 @@ void Stalls::closeWindow(std::int64_t end, bool heard) {
   now_ = silence > usual_ && silence <= longest_ ? silence : 0;
 }
 
-bool Stalls::disturbsRates(std::int64_t end) const {
-  return now_ > 0 || (at_ > 0 && end < until_ + kRateSpan);
-}
-
 }  // namespace self_awareness::core::evidence

@@ -41,8 +41,6 @@ class Stalls {
     const bool over = now_ > 0 || end >= until_ + kRateSpan || stamp > from_;
     return over ? now_ : at_ - from_;
   }
-  /// Whether counts of the last kRateSpan before the end of a window [ns] have a part of a stall.
-  bool disturbsRates(std::int64_t end) const;
   void restart();
 
  private:

@@ -147,22 +147,5 @@ TEST_F(ScorerStallsTest, WhoDoesNotComeBackAfterAStallIsMissing) {
   }
 }
 
-TEST_F(ScorerStallsTest, ATopicThatBeginsLateIsJudgedAfterItsOwnSpan) {
-  const std::size_t fewer = indexOf(model_->tracks(), kFewer, kC, kC);
-  const std::int64_t start = 10 * kSecond;
-  for (const std::int64_t period : {kPeriod, 4 * kPeriod}) {
-    const Events events = together({timer(kA, 0, 2 * start, kPeriod / 5),
-                                    timer(kB, 33 * kMillisecond, 2 * start, kPeriod),
-                                    timer(kC, start + 66 * kMillisecond, 2 * start, period)});
-    scoreWindows(events, 2 * start, [&](std::int64_t end, const std::vector<double>& evidence) {
-      if (end < start + 66 * kMillisecond + kRateSpan) {
-        EXPECT_EQ(evidence[fewer], 0) << end;
-      } else {
-        EXPECT_EQ(evidence[fewer] > model_->leastLimit(fewer), period > kPeriod) << end;
-      }
-    });
-  }
-}
-
 }  // namespace
 }  // namespace self_awareness::core::evidence

@@ -64,7 +64,7 @@ TEST_F(AcceptedTest, AKindIsAcceptedWithWhatComesWithItAndNoMore) {
       all.insert(channelName(track));
     }
   }
-  const Names time{kFewer, kMore, kPairs};
+  const Names time{kSlower, kFaster, kPairs};
   const Names messages{kAge, kLost, kSize, kFrozen};
   for (const Names* const part : {&time, &messages}) {
     for (const std::string& channel : *part) {
@@ -91,8 +91,8 @@ TEST_F(AcceptedTest, AKindIsAcceptedWithWhatComesWithItAndNoMore) {
 }
 
 TEST_F(AcceptedTest, OfATimerItsOwnGapsAreItsTime) {
-  EXPECT_EQ(leftOut(Kind::kFast, "/c").count(kOwnGaps), 1U);
-  EXPECT_EQ(leftOut(Kind::kStuck, "/c").count(kOwnGaps), 0U);
+  EXPECT_EQ(leftOut(Kind::kFast, "/c").count(kSlower), 1U);
+  EXPECT_EQ(leftOut(Kind::kStuck, "/c").count(kSlower), 0U);
 }
 
 TEST_F(AcceptedTest, WhatIsBetweenTwoIsExcusedByEither) {

@@ -39,7 +39,7 @@ class BusyMachineTest : public testing::Test {
   }
   // The components from `first` on have these shares of their limits.
   std::optional<Busy> at(double share, EventId first, EventId number,
-                         const std::string& channel = kFewer) {
+                         const std::string& channel = kSlower) {
     scorer_.closeWindow(now_ += kWindow);
     std::vector<double> shares = allTracks(*model_, 0);
     for (EventId id = first; id < first + number; ++id) {
@@ -55,8 +55,8 @@ class BusyMachineTest : public testing::Test {
 
   const std::vector<EventType> types_ = numberedTypes(kComponents);
   std::shared_ptr<const Model> model_ =
-      std::make_shared<Model>(watch(countsOf({robot(0, 100), robot(2 * kStart, 150)}, types_),
-                                    countsOf({robot(kStart, 200)}, types_), {}, withFrozen()));
+      std::make_shared<Model>(watchAll(countsOf({robot(0, 100), robot(2 * kStart, 150)}, types_),
+                                       countsOf({robot(kStart, 200)}, types_), withFrozen()));
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
   Scorer scorer_{model_, kWindow};
   RecentEvents events_{model_->size()};
@@ -71,11 +71,19 @@ TEST_F(BusyMachineTest, WhoWasLateLongBeforeTheOthersIsSoForAnotherReason) {
     EXPECT_FALSE(at(1.2, 1, 1));
   }
   const std::int64_t alone_until = now_;
-  const std::optional<Busy> busy = at(1.2, 1, 5);
+  at(1.2, 1, 0);
+  std::vector<double> shares = allTracks(*model_, 0);
+  for (EventId id = 1; id < 6; ++id) {
+    ofTrack(shares, *model_, kSlower, id) = 1.2;
+  }
+  excesses_ = excessesOf(model_, shares, scorer_);
+  for (Excess& excess : excesses_) {
+    excess.onset = excess.component == 1 ? alone_until - 30 * kSecond : now_ - kSecond;
+  }
+  const std::optional<Busy> busy = machine_.excuse(excesses_, scorer_, events_);
   ASSERT_TRUE(busy);
   EXPECT_GT(busy->since, alone_until - 20 * kSecond);
   EXPECT_LT(busy->since, alone_until) << "a load that grows makes one after the other late";
-  EXPECT_EQ(at(1.2, 1, 5)->since, busy->since);
 }
 
 TEST_F(BusyMachineTest, ManyThatAreLateAtOnceHaveABusyMachine) {
@@ -111,8 +119,8 @@ TEST_F(BusyMachineTest, WhatBeganBeforeIsNotExcused) {
     machine_.excuse(excesses_, scorer_, events_);
     return excesses_.front().excuse;
   };
-  EXPECT_EQ(excuseOf(now_, 1, kFewer), Excuse::kBusy);
-  EXPECT_EQ(excuseOf(now_ - 20 * kSecond, 1, kFewer), Excuse::kNone);
+  EXPECT_EQ(excuseOf(now_, 1, kSlower), Excuse::kBusy);
+  EXPECT_EQ(excuseOf(now_ - 20 * kSecond, 1, kSlower), Excuse::kNone);
   EXPECT_EQ(excuseOf(now_, 1, kAge), Excuse::kNone) << "what they hold is another thing";
 }
 
@@ -150,7 +158,7 @@ TEST_F(BusyMachineTest, WhoSaysSomethingElseIsNotLate) {
 }
 
 TEST_F(BusyMachineTest, WhoSendsTooOftenIsNotLate) {
-  EXPECT_FALSE(at(1.2, 1, kComponents - 1, kMore));
+  EXPECT_FALSE(at(1.2, 1, kComponents - 1, kFaster));
   EXPECT_TRUE(at(1.2, 1, 5));
 }
 
@@ -158,10 +166,10 @@ TEST_F(BusyMachineTest, WhoFollowsAnotherAsUsualIsNoFurtherOne) {
   ASSERT_TRUE(isWatched(model_->tracks(), kPairs, kComponents - 1, 0));
   std::vector<double> shares = allTracks(*model_, 0);
   for (const EventId id : {0U, 1U, 2U, kComponents - 1}) {
-    ofTrack(shares, *model_, kFewer, id) = 1.2;
+    ofTrack(shares, *model_, kSlower, id) = 1.2;
   }
   EXPECT_FALSE(excuse(shares));
-  ofTrack(shares, *model_, kFewer, 3) = 1.2;
+  ofTrack(shares, *model_, kSlower, 3) = 1.2;
   ASSERT_TRUE(excuse(shares));
 }
 

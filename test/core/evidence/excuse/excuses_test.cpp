@@ -48,7 +48,7 @@ class ExcusesTest : public testing::Test {
     std::vector<double> shares = allTracks(*model_, 0);
     for (EventId id = 0; id < kComponents; ++id) {
       ofTrack(shares, *model_, kOverdue, id) = is_silent[id] ? 2 : 0;
-      ofTrack(shares, *model_, kFewer, id) = chance(slow) ? 1.5 : 0;
+      ofTrack(shares, *model_, kSlower, id) = chance(slow) ? 1.5 : 0;
     }
     drawn_ = excessesOf(model_, shares, *scorer_);
     for (Excess& excess : drawn_) {  // some were so for long
@@ -75,7 +75,7 @@ class ExcusesTest : public testing::Test {
   const std::vector<EventType> types_ = numberedTypes(kComponents);
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
   std::shared_ptr<const Model> model_ = std::make_shared<Model>(
-      watch(countsOf({robot(0, 100)}, types_), countsOf({robot(kStart, 200)}, types_)));
+      watchAll(countsOf({robot(0, 100)}, types_), countsOf({robot(kStart, 200)}, types_)));
   std::shared_ptr<const Upstream> upstream_ =
       std::make_shared<Upstream>(model_->components(), graph_);
   Explanation explanation_{model_, upstream_};

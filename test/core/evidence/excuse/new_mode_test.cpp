@@ -436,7 +436,7 @@ TEST(NewModeOfALargeRobot, TakesLittleTimeWhileAllWaitForOneThatDied) {
   events = together({events, timer(kTypes, 0, 20 * kSecond, 200 * kMillisecond),
                      timer(kTypes + 1, 0, 20 * kSecond, 200 * kMillisecond)});
   Tuning tuning;
-  tuning.without = {kPairs, kOwnGaps, kDeadlines};
+  tuning.without = {kPairs, kSlower, kFaster, kDeadlines};
   const auto model = std::make_shared<Model>(
       watch(countsOf({events}, types), countsOf({later(events)}, types), *graph, tuning));
   Scorer scorer(model, kWindow);

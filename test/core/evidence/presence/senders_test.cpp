@@ -86,8 +86,8 @@ class SendersTest : public testing::Test {
 
   const std::vector<std::optional<EventId>> usual_{0, 1, 2, 3, 4};
   std::shared_ptr<const Model> model_ =
-      std::make_shared<Model>(watch(countsOf({robot(0, 60 * kSecond, 100)}, kRobot),
-                                    countsOf({robot(kStart, 60 * kSecond, 200)}, kRobot)));
+      std::make_shared<Model>(watchAll(countsOf({robot(0, 60 * kSecond, 100)}, kRobot),
+                                       countsOf({robot(kStart, 60 * kSecond, 200)}, kRobot)));
   std::shared_ptr<Vocabulary> heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
   Limits limits_ = allLimits(*model_, kNone);
   std::unique_ptr<Detector> detector_;
@@ -186,7 +186,7 @@ TEST_F(SendersTest, AStrangerAtAnotherRateDoesNotHideWhoNeverCame) {
 
 TEST_F(SendersTest, TwoSendersOfOneNameAreAnAlarmOfNoComponent) {
   for (EventId id = 0; id < kRobot.size(); ++id) {
-    limit(kMore, id) = 3;
+    limit(kFaster, id) = 3;
   }
   start();
   run(0, 30 * kSecond, usual_);
@@ -242,7 +242,7 @@ TEST_F(SendersTest, WhatCountedTwiceInTrainingIsNormal) {
     return events;
   };
   model_ = std::make_shared<Model>(
-      watch(countsOf({relay(0, 100)}, kRobot), countsOf({relay(kStart, 200)}, kRobot)));
+      watchAll(countsOf({relay(0, 100)}, kRobot), countsOf({relay(kStart, 200)}, kRobot)));
   limits_ = allLimits(*model_, kNone);
   start();
   detector_->setSenders({{{"/a", "/x"}}, {}});
@@ -251,7 +251,7 @@ TEST_F(SendersTest, WhatCountedTwiceInTrainingIsNormal) {
 }
 
 TEST_F(SendersTest, WhoPlaysOnTopicsOfTheRobotIsTheFirstSuspect) {
-  limit(kMore, kC) = 3;
+  limit(kFaster, kC) = 3;
   start();
   run(0, 30 * kSecond, usual_);
   const EventType scan{"/play_17", "/x", "T"};

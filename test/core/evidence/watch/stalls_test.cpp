@@ -83,18 +83,10 @@ TEST_F(StallsTest, NobodysAgeGrowsMeanwhileNorAfterwards) {
   EXPECT_EQ(stalls_.standstillSince(stopped, end + 3 * kSecond), 0) << "it is over";
 }
 
-TEST_F(StallsTest, RatesAreDisturbedForAsLongAsTheyCountIt) {
-  EXPECT_FALSE(stalls_.disturbsRates(kStart));
-  const std::int64_t over = stall(300 * kMillisecond) + 300 * kMillisecond + kRateSpan;
-  EXPECT_TRUE(stalls_.disturbsRates(over - 1));
-  EXPECT_FALSE(stalls_.disturbsRates(over));
-}
-
 TEST_F(StallsTest, ARestartForgetsIt) {
   const std::int64_t end = stall(300 * kMillisecond);
   stalls_.restart();
   EXPECT_FALSE(stalls_.holdsBack(end));
-  EXPECT_FALSE(stalls_.disturbsRates(end));
 }
 
 }  // namespace

@@ -1,0 +1,302 @@
+#include "core/evidence/channel/pace.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "core/evidence/count/log_bins.h"
+#include "core/evidence/watch/arming.h"
+#include "self_awareness/core/evidence/channel/model.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr double kMost = 200;  // of a sum whose limit is not known
+// Other paces, in bins of a quarter of an octave: 0.7 of the rate or a half; and 1.4, 2 or more,
+// up to 64 times the rate. What is still slower is a silence again and again.
+constexpr std::ptrdiff_t kSlightly = 2;
+constexpr std::ptrdiff_t kTwice = 4;
+constexpr std::ptrdiff_t kMostBins = 24;
+// Who comes as often as usual, and has other gaps, is neither slower nor faster.
+constexpr double kSameRate = 0.1;
+
+using ByBin = std::array<double, kDelayBins>;
+
+/// The same gaps, longer by so many bins; what would leave the bins stays in the outermost one.
+ByBin longer(const ByBin& shares, std::ptrdiff_t bins) {
+  constexpr std::ptrdiff_t kLast = kDelayBins - 1;
+  ByBin moved{};
+  for (std::size_t bin = 0; bin < shares.size(); ++bin) {
+    const auto to = std::clamp(static_cast<std::ptrdiff_t>(bin) + bins, std::ptrdiff_t{0}, kLast);
+    moved[static_cast<std::size_t>(to)] += shares[bin];
+  }
+  return moved;
+}
+
+/// What each gap adds to the sum [nat], by bin: half of them are of another pace.
+ByBin stepsOf(const DelayHistogram& gaps, Pace::Side side, const Tuning& tuning) {
+  const LogProbabilities logs = gaps.logProbabilities();
+  ByBin usual{};
+  std::transform(logs.begin(), logs.end(), usual.begin(),
+                 [](double log) { return std::exp(log); });
+  // What is a bin longer or shorter is no other pace.
+  const ByBin a_bin_longer = longer(usual, 1);
+  const ByBin a_bin_shorter = longer(usual, -1);
+  for (std::size_t bin = 0; bin < usual.size(); ++bin) {
+    usual[bin] = usual[bin] / 2 + (a_bin_longer[bin] + a_bin_shorter[bin]) / 4;
+  }
+  ByBin steps{};
+  const bool is_slower = side == Pace::Side::kSlower;
+  const auto addPace = [&](std::ptrdiff_t bins, double share) {
+    const ByBin moved = longer(usual, is_slower ? bins : -bins);
+    for (std::size_t bin = 0; bin < steps.size(); ++bin) {
+      steps[bin] += share * moved[bin] / usual[bin];
+    }
+  };
+  addPace(kSlightly, is_slower ? 1.0 / 2 : 1.0 / 3);
+  addPace(kTwice, is_slower ? 1.0 / 2 : 1.0 / 3);
+  for (std::ptrdiff_t bins = kTwice + 1; !is_slower && bins <= kMostBins; ++bins) {
+    addPace(bins, 1.0 / 3 / (kMostBins - kTwice));
+  }
+  for (double& step : steps) {
+    // Two lost messages must not be enough.
+    step = std::min(std::log((1 + step) / 2), tuning.least_pace / 2);
+  }
+  return steps;
+}
+
+/// How much gaps as in training speak against the other pace, all of them together [nat].
+double toldBy(const DelayHistogram& gaps, const ByBin& steps) {
+  double told = 0;
+  for (std::size_t bin = 0; bin < steps.size(); ++bin) {
+    told -= steps[bin] * gaps[bin];
+  }
+  return told;
+}
+
+class ExpectedPaces : public Expectation {
+ public:
+  ExpectedPaces(const Model& model, std::vector<std::size_t> tracks, Pace::Side side);
+
+  std::unique_ptr<ChannelState> start() const override;
+  double leastLimit(std::size_t /*track*/) const override { return model_.tuning().least_pace; }
+  double limit(std::size_t /*track*/, double largest, double most) const override {
+    // Nobody knows how far a sum would have grown that ended at its cap.
+    return largest < kMost ? most : std::numeric_limits<double>::quiet_NaN();
+  }
+  double step(std::size_t number, std::int64_t gap) const {
+    return steps_[number][log_bins::bin(gap)];
+  }
+  const Model& model() const { return model_; }
+  double meanGap(std::size_t number) const { return mean_gaps_[number]; }  // [ns]
+  EventId typeOf(std::size_t number) const { return model_.tracks()[tracks()[number]].to; }
+  std::size_t numberOf(std::size_t track) const {
+    // In order: every window asks for those that are unusual.
+    return static_cast<std::size_t>(std::lower_bound(tracks().begin(), tracks().end(), track) -
+                                    tracks().begin());
+  }
+  /// Says that so many gaps took so long [s].
+  void describe(EventId id, std::uint32_t gaps, double time, Reason& reason) const;
+
+ private:
+  const Model& model_;
+  Pace::Side side_;
+  std::vector<ByBin> steps_;       // by number of the track
+  std::vector<double> mean_gaps_;  // the same [ns]
+};
+
+class PacesState : public ChannelState {
+ public:
+  explicit PacesState(const ExpectedPaces& expected);
+
+  bool listens() const override { return !paces_.empty(); }
+  void add(const Heard::Arrival& arrival, const Heard& /*heard*/) override {
+    const std::uint32_t number = number_of_[arrival.id];
+    if (number == kNone || arrival.last == 0) {
+      return;
+    }
+    OfType& pace = paces_[number];
+    const std::int64_t gap = arrival.stamp - arrival.last_stamp;
+    double step = expected_.step(number, gap);
+    // Who loses messages on the way is not slow: Lost tells it.
+    const bool counts = !arrival.stalled && !arrival.attributes.isAfterLoss();
+    if (pace.catchesUp(static_cast<double>(gap), step, expected_.meanGap(number)) || !counts) {
+      step = 0;
+    }
+    if (pace.sum <= 0) {
+      pace.since = arrival.last_stamp;
+      pace.gaps = 0;
+    }
+    pace.last = arrival.stamp;
+    ++pace.gaps;
+    pace.sum = std::clamp(pace.sum + step, 0.0, pace.cap);
+    if (!pace.arming.armed() && counts) {
+      if (pace.arming.failed()) {
+        pace.arming.add(step, arming_);
+      } else {
+        pace.arming.arm();  // the history of one event type has no phase that could be another one
+      }
+    }
+  }
+  void disarm(EventId id) override {
+    if (number_of_[id] != kNone) {
+      paces_[number_of_[id]].sum = 0;
+      paces_[number_of_[id]].arming.disarm();
+    }
+  }
+  void forget(EventId id) override {
+    if (number_of_[id] != kNone) {
+      paces_[number_of_[id]].sum = 0;
+      paces_[number_of_[id]].arming.forget();
+    }
+  }
+  void restart() override;
+  void capAt(const std::vector<double>& limits) override;
+  void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  std::optional<std::int64_t> onset(std::size_t track) const override {
+    return paces_[expected_.numberOf(track)].since;
+  }
+  void addDisarmed(std::vector<std::size_t>& tracks) const override {
+    for (std::size_t number = 0; number < paces_.size(); ++number) {
+      if (paces_[number].arming.failed() && !paces_[number].arming.armed()) {
+        tracks.push_back(expected_.tracks()[number]);
+      }
+    }
+  }
+  void explain(std::size_t track, const Heard& /*heard*/, const RecentEvents& /*events*/,
+               Suspect& suspect) const override {
+    const OfType& pace = paces_[expected_.numberOf(track)];
+    expected_.describe(suspect.id, pace.gaps, toSeconds(pace.last - pace.since), suspect.reason);
+  }
+
+ private:
+  struct OfType {
+    double sum = 0;
+    double cap = kMost;
+    std::int64_t since = 0;  // begin of the first gap since the sum was 0 [ns]
+    std::int64_t last = 0;   // end of the last one [ns]
+    std::uint32_t gaps = 0;  // since then
+    double behind = 0;       // what gaps were too long, of which none was as usual since [ns]
+    Arming arming;
+
+    /// Whether a gap is short since its message waited, or the one before it did.
+    bool catchesUp(double gap, double step, double mean_gap) {
+      const bool catches_up = step > 0 && gap < mean_gap && behind > 0;
+      if (catches_up || gap > mean_gap) {
+        behind = std::max(behind + gap - mean_gap, 0.0);
+      } else {
+        behind = 0;
+      }
+      return catches_up;
+    }
+  };
+
+  const ExpectedPaces& expected_;
+  double most_of_limit_;
+  Arming::Numbers arming_;
+  bool has_limits_ = false;
+  std::vector<std::uint32_t> number_of_;  // of the track of a type, by id
+  std::vector<OfType> paces_;             // by number of the track
+};
+
+ExpectedPaces::ExpectedPaces(const Model& model, std::vector<std::size_t> tracks, Pace::Side side)
+    : Expectation(std::move(tracks)), model_(model), side_(side) {
+  for (std::size_t number = 0; number < this->tracks().size(); ++number) {
+    const EventId id = typeOf(number);
+    steps_.push_back(stepsOf(model.learned().delays(id, id), side, model.tuning()));
+    mean_gaps_.push_back(model.meanGap(id));
+  }
+}
+
+std::unique_ptr<ChannelState> ExpectedPaces::start() const {
+  return std::make_unique<PacesState>(*this);
+}
+
+void ExpectedPaces::describe(EventId id, std::uint32_t gaps, double time, Reason& reason) const {
+  const double usual = 1e9 * time / model_.meanGap(id);  // gaps in that time
+  const double fewest = 1e9 * time / model_.usualDelay(id, id, 0.95);
+  const double most = 1e9 * time / model_.usualDelay(id, id, 0.05);
+  // The more there are, the better their number is known.
+  const double spread = std::max((most - fewest) / std::sqrt(std::max(usual, 1.0)) / 2, 0.5);
+  const double least = std::max(std::floor(usual - spread), 0.0);
+  const double largest = std::ceil(usual + spread);
+  const double number = gaps;
+  reason.kind = std::abs(number - usual) < kSameRate * usual ? Kind::kOutOfOrder
+                : side_ == Pace::Side::kSlower               ? Kind::kSlow
+                                                             : Kind::kFast;
+  reason.unit = unit::kHertz;
+  reason.lasted = time;
+  reason.value = number / time;
+  reason.usual = usual / time;
+  reason.usual_shortest = least / time;
+  reason.usual_longest = largest / time;
+  char text[100];
+  std::snprintf(text, sizeof text, "%u in the last %.1f s, usually %.0f to %.0f", gaps, time,
+                least, largest);
+  reason.words = text;
+}
+
+PacesState::PacesState(const ExpectedPaces& expected)
+    : expected_(expected),
+      most_of_limit_(expected.model().tuning().most_of_limit),
+      arming_(expected.model().tuning()),
+      number_of_(expected.model().size(), kNone),
+      paces_(expected.tracks().size()) {
+  for (std::uint32_t number = 0; number < paces_.size(); ++number) {
+    number_of_[expected.typeOf(number)] = number;
+  }
+}
+
+void PacesState::restart() {
+  for (OfType& pace : paces_) {
+    pace.sum = 0;
+    pace.behind = 0;
+    pace.arming = {};
+  }
+}
+
+void PacesState::capAt(const std::vector<double>& limits) {
+  has_limits_ = true;
+  for (std::size_t number = 0; number < paces_.size(); ++number) {
+    const double limit = limits[expected_.tracks()[number]];
+    if (limit > 0) {  // never so where it is NaN
+      paces_[number].cap = most_of_limit_ * limit;
+    }
+  }
+}
+
+void PacesState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
+  for (std::size_t number = 0; number < paces_.size(); ++number) {
+    OfType& pace = paces_[number];
+    if (has_limits_ && pace.arming.fails(pace.sum * most_of_limit_ > pace.cap, pace.sum <= 0,
+                                         heard.windowEnd(), arming_)) {
+      pace.sum = 0;
+    }
+    evidence[expected_.tracks()[number]] = pace.arming.armed() ? pace.sum : 0;
+  }
+}
+
+}  // namespace
+
+std::vector<Track> Pace::watch(const Choice& choice) const {
+  std::vector<Track> tracks;
+  for (EventId id = 0; id < choice.both.size(); ++id) {
+    const DelayHistogram gaps = choice.both.delays(id, id);
+    // Gaps that differ by much are told from another pace by many of them only.
+    if (choice.isJudged(id) &&
+        toldBy(gaps, stepsOf(gaps, side_, choice.tuning)) >= choice.tuning.least_told) {
+      tracks.push_back({this, id, id});
+    }
+  }
+  return tracks;
+}
+
+std::unique_ptr<const Expectation> Pace::expect(const Model& model, const Halves& /*halves*/,
+                                                std::vector<std::size_t> tracks) const {
+  return std::make_unique<ExpectedPaces>(model, std::move(tracks), side_);
+}
+
+}  // namespace self_awareness::core::evidence

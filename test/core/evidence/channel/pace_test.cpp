@@ -1,0 +1,219 @@
+#include "core/evidence/channel/pace.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "channel_case.h"
+#include "self_awareness/core/evidence/limits/coverage.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::int64_t kLong = 400 * kMillisecond;
+constexpr std::int64_t kShort = 100 * kMillisecond;
+
+// A is a timer; what comes at random beside it says nothing of it.
+class PaceTest : public ChannelTest {
+ protected:
+  PaceTest() : ChannelTest(watch(timerAmongOthers(1), timerAmongOthers(2))) {}
+
+  static Statistics timerAmongOthers(unsigned seed) {
+    return startOf(together({timer(kA, 0, 100 * kSecond, kPeriod),
+                             irregular(kC, 0, 100 * kSecond, 50 * kMillisecond, seed)}),
+                   seed);
+  }
+  // Adds an A so long after the last one; until then, the robot is not silent.
+  void wait(std::int64_t gap) {
+    for (std::int64_t at = 10 * kMillisecond; at < gap; at += 10 * kMillisecond) {
+      add({now_ + at, kC});
+    }
+    now_ += gap;
+    add({now_, kA});
+    scorer_.closeWindow(now_);
+  }
+  void wait(std::int64_t gap, int times) {
+    for (int i = 0; i < times; ++i) {
+      wait(gap);
+    }
+  }
+  double slower() { return evidence(slower_); }
+  double faster() { return evidence(faster_); }
+
+  std::size_t slower_ = track(kSlower, kA, kA);
+  std::size_t faster_ = track(kFaster, kA, kA);
+};
+
+TEST_F(PaceTest, OtherGapsSpeakForIt) {
+  add({now_, kA});
+  wait(kPeriod, 10);
+  EXPECT_EQ(slower(), 0);
+  EXPECT_EQ(faster(), 0);
+  for (const std::int64_t gap : {3 * kPeriod / 2, kLong}) {
+    wait(kPeriod, 60);
+    wait(gap, 3);
+    EXPECT_GT(slower(), model_->leastLimit(slower_)) << gap;
+    EXPECT_LT(faster(), 2) << gap;
+  }
+  for (const std::int64_t gap : {2 * kPeriod / 3, kShort, kPeriod / 4}) {
+    wait(kPeriod, 60);
+    wait(gap, gap > kPeriod / 4 ? 3 : 9);
+    EXPECT_GT(faster(), model_->leastLimit(faster_)) << gap;
+    EXPECT_LT(slower(), 2) << gap;
+  }
+}
+
+TEST_F(PaceTest, ABitLongerIsNoOtherPace) {
+  add({now_, kA});
+  wait(115 * kPeriod / 100, 100);
+  wait(88 * kPeriod / 100, 100);
+  EXPECT_EQ(slower(), 0);
+  EXPECT_EQ(faster(), 0);
+}
+
+TEST_F(PaceTest, AHiccupIsMadeUpForByTheGapsThatFollow) {
+  add({now_, kA});
+  wait(kPeriod, 10);
+  wait(2 * kPeriod);
+  const double once = slower();
+  EXPECT_GT(once, 0);
+  EXPECT_LT(once, model_->leastLimit(slower_)) << "one message is lost";
+  wait(kPeriod);
+  EXPECT_NEAR(slower(), once - std::log(2), 0.05) << "half of the gaps are of another pace";
+  wait(kPeriod, 60);
+  EXPECT_EQ(slower(), 0);
+}
+
+TEST_F(PaceTest, WhatWaitedAndComesAtOnceIsNotFaster) {
+  add({now_, kA});
+  wait(kPeriod, 10);
+  wait(5 * kPeriod);
+  for (int i = 0; i < 4; ++i) {
+    wait(kMillisecond);
+  }
+  EXPECT_EQ(faster(), 0);
+  wait(kPeriod, 10);
+  wait(7 * kPeriod);  // as of a restart
+  for (int i = 0; i < 6; ++i) {
+    wait(kMillisecond);
+  }
+  EXPECT_EQ(faster(), 0);
+  wait(kPeriod, 3);
+  wait(kPeriod / 4, 9);
+  EXPECT_GT(faster(), model_->leastLimit(faster_)) << "nothing waited";
+}
+
+TEST_F(PaceTest, WhatIsLostOnTheWayIsNotSlower) {
+  add({now_, kA});
+  wait(kPeriod, 10);
+  Event event{now_ += kLong, kA};
+  event.attributes.step = Attributes::Step::kLostOne;
+  add(event);
+  EXPECT_EQ(slower(), 0);
+}
+
+TEST_F(PaceTest, NoSumGrowsFarBeyondItsLimit) {
+  useLimits();
+  add({now_, kA});
+  wait(kLong, 30);
+  EXPECT_DOUBLE_EQ(slower(), 1.5 * kLimit);
+}
+
+TEST_F(PaceTest, ASumThatReachedItsCapHasNoLimit) {
+  // As of a robot that sends at other rates in other modes: nobody knows how far it would grow.
+  const Expectation& expected = model_->expectation(slower_);
+  EXPECT_EQ(expected.limit(slower_, 199, 300), 300);
+  EXPECT_TRUE(std::isnan(expected.limit(slower_, 200, 300)));
+  const std::vector<Coverage> coverage =
+      coverageOf(*model_, allLimits(*model_, kNone), {}, kWindow, false);
+  ASSERT_EQ(coverage[model_->componentIndex(kA)].blind.size(), 1U);
+  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].about, "pace");
+  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].topic, kTypes[kA].scope);
+}
+
+TEST_F(PaceTest, LimitsAreAtLeastTwiceWhatWasSeen) {
+  EXPECT_EQ(Pace(Pace::Side::kSlower).margins(Tuning{}).least, 2);
+}
+
+TEST_F(PaceTest, WhatMayHaveWaitedForAStallDoesNotCount) {
+  add({now_, kA});
+  wait(kPeriod, 10);
+  now_ += kLong;  // nobody says anything
+  add({now_, kA});
+  EXPECT_TRUE(scorer_.stalled());
+  EXPECT_EQ(slower(), 0);
+}
+
+TEST_F(PaceTest, AfterARestartOfTheComponentTheSumIsForgotten) {
+  add({now_, kA});
+  wait(kPeriod, 10);
+  wait(kLong);
+  EXPECT_GT(slower(), 0);
+  wait(6 * kPeriod);
+  EXPECT_EQ(slower(), 0) << "so long a gap is that of a restart";
+  wait(kPeriod);
+  wait(kLong);
+  EXPECT_GT(slower(), 0) << "at once";
+}
+
+TEST_F(PaceTest, ANewPaceIsNewsOnceAndThenAccepted) {
+  useLimits();
+  const auto isDisarmed = [this] {
+    const std::vector<std::size_t> all = scorer_.disarmed();
+    return std::count(all.begin(), all.end(), slower_) == 1;
+  };
+  EXPECT_FALSE(isDisarmed()) << "gaps count from the first one on";
+  add({now_, kA});
+  wait(kPeriod, 10);
+  const std::int64_t since = now_;
+  do {
+    wait(kLong);
+  } while (slower() > 0);
+  EXPECT_GE(now_ - since, kAccepted);
+  EXPECT_LT(now_ - since, kAccepted + 5 * kSecond);
+  EXPECT_TRUE(isDisarmed());
+  wait(kPeriod, 2 * kArming - 2);
+  wait(kLong);
+  EXPECT_EQ(slower(), 0) << "it must be as in training again, for twice as many gaps";
+  wait(kPeriod, 2);
+  EXPECT_FALSE(isDisarmed());
+  wait(kLong);
+  EXPECT_GT(slower(), 0);
+}
+
+TEST_F(PaceTest, ASuspectIsToldOfByTheNumberSinceTheSumBegan) {
+  add({now_, kA});
+  wait(kPeriod, 60);
+  wait(kLong, 10);
+  const Reason reason = suspect(slower_).reason;
+  EXPECT_EQ(reason.kind, Kind::kSlow);
+  EXPECT_EQ(reason.unit, unit::kHertz);
+  EXPECT_NEAR(reason.value, 2.5, 1e-9);
+  EXPECT_NEAR(reason.usual, 5, 1e-9);
+  EXPECT_DOUBLE_EQ(reason.lasted, 4);
+  EXPECT_EQ(reason.words, "10 in the last 4.0 s, usually 19 to 21");
+  EXPECT_EQ(reason.after, "");
+}
+
+TEST(PaceOfFewGaps, IsWatchedWhereTheyTellItFromAnotherOne) {
+  const auto watched = [](int gaps, bool regular) {
+    const std::int64_t end = gaps * kSecond + 1;
+    const auto start = [&](unsigned seed) {
+      const Events own =
+          regular ? timer(kA, 0, end, kSecond) : irregular(kA, 0, end, kSecond, seed);
+      return together({own, timer(kC, 0, end, kPeriod)});
+    };
+    return isWatched(Model(watch(countsOf({start(1)}), countsOf({later(start(2))}))).tracks(),
+                     kSlower, kA, kA);
+  };
+  EXPECT_FALSE(watched(static_cast<int>(Tuning{}.fewest_gaps), true));
+  EXPECT_TRUE(watched(100, true));
+  EXPECT_FALSE(watched(100, false)) << "by chance, a hundred come as seldom";
+  EXPECT_TRUE(watched(5000, false));
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence
