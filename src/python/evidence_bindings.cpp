@@ -119,7 +119,7 @@ void bindEvidence(py::module& m) {
   py::class_<Track>(m, "Track", "One thing that the evidence detector watches.")
       .def_property_readonly(
           "channel", [](const Track& self) { return evidence::channelLabel(self); },
-          "as people read it: overdue, rate, pairs, deadlines or its own")
+          "as people read it: overdue, pace, pairs, deadlines or its own")
       .def_property_readonly(
           "name", [](const Track& self) { return evidence::channelName(self); },
           "of the channel (Tuning.channels)")

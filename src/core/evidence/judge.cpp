@@ -271,9 +271,15 @@ std::vector<Disarmed> Judge::disarmed() const {
   for (const std::size_t index : scorer_.disarmed()) {
     if (limits_ && !std::isnan(limits_->tracks[index])) {
       const Track& track = model_->tracks()[index];
-      disarmed.push_back({track.to, std::nullopt});
+      Disarmed one{track.to, std::nullopt};
       if (track.from != track.to) {
-        disarmed.back().after = track.from;
+        one.after = track.from;
+      }
+      const auto isSame = [&](const Disarmed& other) {  // slower and faster are one pace
+        return other.id == one.id && other.after == one.after;
+      };
+      if (std::none_of(disarmed.begin(), disarmed.end(), isSame)) {
+        disarmed.push_back(one);
       }
     }
   }

@@ -13,6 +13,9 @@ ARMING_EVENTS = 30
 MOST_FAILURES = 10
 USUAL_SURPRISE = 0.3
 GONE_GAPS = 5
+LATE = 1.2
+"""Mean gaps."""
+MOST_BEHIND = 2.0 * SECOND
 MOST_EVIDENCE = 200.0
 MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
@@ -162,15 +165,17 @@ class ReferenceScorer:
         step = self._model.step(track, gap)
         mean = self._model.both.mean_gap(track[1])
         catches_up = step > 0.0 and gap < mean and watch.behind > 0.0
-        watch.behind = max(watch.behind + gap - mean, 0.0) if catches_up or gap > mean else 0.0
+        watch.behind = (min(max(watch.behind + gap - mean, 0.0), MOST_BEHIND)
+                        if catches_up or gap > LATE * mean else 0.0)
         step = 0.0 if catches_up or waited else step
         watch.add(step)
         if waited:
             return
         if watch.arming.failures == 0:
             watch.arming.armed = True
-        else:
-            watch.arming.add(step)
+        elif not watch.arming.armed:
+            watch.arming.add(step + USUAL_SURPRISE)
+            watch.sum = 0.0 if watch.arming.armed else watch.sum
 
     def _add_delay(self, watch: Watch, t: int, track: Track) -> None:
         _, to, other = track

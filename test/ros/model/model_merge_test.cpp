@@ -127,7 +127,7 @@ TEST_F(ModelMergeTest, WhatWasLearnedUnderOtherNamesIsRenamed) {
 TEST_F(ModelMergeTest, TheTuningIsKept) {
   core::evidence::Tuning tuning;
   tuning.least_effect = 0.003;
-  tuning.without = {"fewer"};
+  tuning.without = {"slower"};
   for (TrainedModel* model : {&first_, &second_}) {
     model->tuning = tuning;
   }
@@ -140,7 +140,7 @@ TEST_F(ModelMergeTest, TheTuningIsKept) {
 
 TEST_F(ModelMergeTest, NumbersThatDifferAreThoseOfThisVersion) {
   first_.tuning.least_effect = 0.003;
-  second_.tuning.without = {"fewer"};
+  second_.tuning.without = {"slower"};
   merge(first_, second_);
   first_.watch();
   EXPECT_TRUE(first_.tuning == core::evidence::Tuning{});

@@ -39,10 +39,11 @@ struct Judgement {
   std::vector<Suspect> suspects;
 };
 
-/// Delays that do not count until they have been as in training (docs/method.md, section 3.7).
+/// Delays, or a pace, that do not count until they have been as in training (docs/method.md,
+/// section 3.7).
 struct Disarmed {
-  EventId id = 0;                ///< the event type that comes after a delay
-  std::optional<EventId> after;  ///< the other one; none: its own gaps
+  EventId id = 0;                ///< the event type that comes
+  std::optional<EventId> after;  ///< another one, of a delay; none: its pace
 };
 
 /// Of which windows a judge names suspects: naming them takes time.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -69,7 +70,7 @@ class ChannelState {
   /// Sets the evidence of its tracks at the end of a window; 0: none.
   /// @param evidence by track of the model
   virtual void closeWindow(const Heard& heard, std::vector<double>& evidence) = 0;
-  /// Since when what a track sees has been so [ns]; none: it is as long ago as it looks back.
+  /// Since when what a track sees has been so [ns]; none: it does not know.
   virtual std::optional<std::int64_t> onset(std::size_t /*track*/) const { return std::nullopt; }
   /// Adds those of its tracks that do not count until they have been as in training.
   virtual void addDisarmed(std::vector<std::size_t>& /*tracks*/) const {}
@@ -91,6 +92,12 @@ class Expectation {
   virtual ~Expectation() = default;
 
   const std::vector<std::size_t>& tracks() const { return tracks_; }
+  /// Which of them, from 0 on, a track of the model is. In order: every window asks for those that
+  /// are unusual.
+  std::size_t numberOf(std::size_t track) const {
+    return static_cast<std::size_t>(std::lower_bound(tracks_.begin(), tracks_.end(), track) -
+                                    tracks_.begin());
+  }
   /// The state at the start of a recording; this must outlive it.
   virtual std::unique_ptr<ChannelState> start() const = 0;
   /// Least limit that a track may have, in units of its evidence (docs/method.md, section 5.3).
@@ -156,8 +163,6 @@ class Channel {
     own.watched = true;  // what looks at one event type needs no reason
     return own;
   }
-  /// How far back evidence looks that a window has [ns].
-  virtual std::int64_t looksBack() const { return 0; }
   /// Whether a recording can show that its delays mislead.
   virtual bool mayMislead() const { return false; }
   virtual Margins margins(const Tuning& tuning) const {

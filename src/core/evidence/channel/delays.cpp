@@ -206,12 +206,6 @@ const Track& ExpectedDelays::track(std::size_t number) const {
   return model_.tracks()[tracks()[number]];
 }
 
-std::size_t ExpectedDelays::numberOf(std::size_t track) const {
-  // In order: every window asks for those that are unusual.
-  return static_cast<std::size_t>(std::lower_bound(tracks().begin(), tracks().end(), track) -
-                                  tracks().begin());
-}
-
 void describeDelays(const std::vector<SeenDelay>& seen, double cap, double usual, std::int64_t now,
                     Reason& reason) {
   reason.unit = unit::kSeconds;

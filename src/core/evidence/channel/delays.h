@@ -8,7 +8,6 @@
 
 #include "core/evidence/channel/channel.h"
 #include "core/evidence/count/log_bins.h"
-#include "core/evidence/watch/arming.h"
 
 namespace self_awareness::core::evidence {
 
@@ -113,8 +112,6 @@ class ExpectedDelays : public Expectation {
   const Model& model() const { return model_; }
   /// The track of a number from 0 on: its event types.
   const Track& track(std::size_t number) const;
-  /// The number of a track of the model.
-  std::size_t numberOf(std::size_t track) const;
 
  private:
   const Model& model_;

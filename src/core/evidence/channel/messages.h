@@ -74,10 +74,7 @@ class ExpectedMessages : public Expectation {
   const Model& model() const { return model_; }
 
  private:
-  const Usual& usualOf(std::size_t track) const {
-    const auto place = std::lower_bound(tracks().begin(), tracks().end(), track);
-    return usual_[static_cast<std::size_t>(place - tracks().begin())];
-  }
+  const Usual& usualOf(std::size_t track) const { return usual_[numberOf(track)]; }
 
   const Model& model_;
   std::vector<Usual> usual_;          // by number

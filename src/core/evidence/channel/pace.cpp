@@ -15,6 +15,12 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr double kMost = 200;  // of a sum whose limit is not known
+// A gap that is a bin longer than the mean one, or more, makes its type late; what waited for
+// longer than that [ns] is no longer made up for.
+constexpr double kLate = 1.2;
+constexpr double kMostBehind = 2e9;
+// Messages of one stamp took some time, too [s].
+constexpr double kLeastTime = 1e-3;
 // Other paces, in bins of a quarter of an octave: 0.7 of the rate or a half; and 1.4, 2 or more,
 // up to 64 times the rate. What is still slower is a silence again and again.
 constexpr std::ptrdiff_t kSlightly = 2;
@@ -93,11 +99,6 @@ class ExpectedPaces : public Expectation {
   const Model& model() const { return model_; }
   double meanGap(std::size_t number) const { return mean_gaps_[number]; }  // [ns]
   EventId typeOf(std::size_t number) const { return model_.tracks()[tracks()[number]].to; }
-  std::size_t numberOf(std::size_t track) const {
-    // In order: every window asks for those that are unusual.
-    return static_cast<std::size_t>(std::lower_bound(tracks().begin(), tracks().end(), track) -
-                                    tracks().begin());
-  }
   /// Says that so many gaps took so long [s].
   void describe(EventId id, std::uint32_t gaps, double time, Reason& reason) const;
 
@@ -135,7 +136,9 @@ class PacesState : public ChannelState {
     pace.sum = std::clamp(pace.sum + step, 0.0, pace.cap);
     if (!pace.arming.armed() && counts) {
       if (pace.arming.failed()) {
-        pace.arming.add(step, arming_);
+        // As in training, gaps speak against another pace.
+        pace.arming.add(step + arming_.usual, arming_);
+        pace.sum = pace.arming.armed() ? 0 : pace.sum;
       } else {
         pace.arming.arm();  // the history of one event type has no phase that could be another one
       }
@@ -169,7 +172,8 @@ class PacesState : public ChannelState {
   void explain(std::size_t track, const Heard& /*heard*/, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
     const OfType& pace = paces_[expected_.numberOf(track)];
-    expected_.describe(suspect.id, pace.gaps, toSeconds(pace.last - pace.since), suspect.reason);
+    const double time = std::max(toSeconds(pace.last - pace.since), kLeastTime);
+    expected_.describe(suspect.id, pace.gaps, time, suspect.reason);
   }
 
  private:
@@ -185,11 +189,8 @@ class PacesState : public ChannelState {
     /// Whether a gap is short since its message waited, or the one before it did.
     bool catchesUp(double gap, double step, double mean_gap) {
       const bool catches_up = step > 0 && gap < mean_gap && behind > 0;
-      if (catches_up || gap > mean_gap) {
-        behind = std::max(behind + gap - mean_gap, 0.0);
-      } else {
-        behind = 0;
-      }
+      const bool is_late = gap > kLate * mean_gap;
+      behind = catches_up || is_late ? std::clamp(behind + gap - mean_gap, 0.0, kMostBehind) : 0;
       return catches_up;
     }
   };
@@ -217,8 +218,8 @@ std::unique_ptr<ChannelState> ExpectedPaces::start() const {
 
 void ExpectedPaces::describe(EventId id, std::uint32_t gaps, double time, Reason& reason) const {
   const double usual = 1e9 * time / model_.meanGap(id);  // gaps in that time
-  const double fewest = 1e9 * time / model_.usualDelay(id, id, 0.95);
-  const double most = 1e9 * time / model_.usualDelay(id, id, 0.05);
+  const double fewest = std::max(1e9 * time / model_.usualDelay(id, id, 0.95), usual / 2);
+  const double most = std::min(1e9 * time / model_.usualDelay(id, id, 0.05), 2 * usual);
   // The more there are, the better their number is known.
   const double spread = std::max((most - fewest) / std::sqrt(std::max(usual, 1.0)) / 2, 0.5);
   const double least = std::max(std::floor(usual - spread), 0.0);

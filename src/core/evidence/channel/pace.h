@@ -18,7 +18,9 @@ class Pace : public Channel {
     return side_ == Side::kSlower ? Finding::kFewer : Finding::kUnusual;
   }
   Kind kind() const override { return side_ == Side::kSlower ? Kind::kSlow : Kind::kFast; }
-  std::string about() const override { return side_ == Side::kSlower ? "pace" : ""; }
+  std::string about() const override {
+    return side_ == Side::kSlower ? "slower pace" : "faster pace";
+  }
   std::string whyNot(const Statistics& /*counts*/, EventId /*id*/,
                      const Tuning& /*tuning*/) const override {
     return "it changed for long in normal operation";

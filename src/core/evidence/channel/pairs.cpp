@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/evidence/channel/delays.h"
+#include "core/evidence/watch/arming.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {

@@ -9,7 +9,6 @@
 
 #include "core/evidence/watch/heard.h"
 #include "self_awareness/core/evidence/channel/model.h"
-#include "self_awareness/core/stream/recent_counts.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/suspect.h"

@@ -92,7 +92,6 @@ std::optional<Busy> BusyMachine::late(const std::vector<Excess>& excesses, const
       // Silences of a busy machine end soon.
       silent[excess.component] = silent[excess.component] || !busy_since_ ||
                                  !mayHold(model_->tracks()[excess.track].to, scorer.heard());
-      lateness_[excess.component].silent = now;
     }
   }
   noteLate(excesses, scorer, events);
@@ -146,9 +145,6 @@ void BusyMachine::noteLate(const std::vector<Excess>& excesses, const Scorer& sc
   for (const Excess& excess : excesses) {
     Lateness& lateness = lateness_[excess.component];
     const Track& watched = model_->tracks()[excess.track];
-    // What looks back to a silence says what that was, and nothing of who is back.
-    const bool is_back =
-        lateness.silent != kNever && now - lateness.silent < watched.channel->looksBack();
     // What was late for long is news no more, but who is held up falls silent now and then.
     const bool is_held_up = busy_since_ && model_->finding(excess.track) == Finding::kSilent &&
                             mayHold(watched.to, scorer.heard());
@@ -158,8 +154,8 @@ void BusyMachine::noteLate(const std::vector<Excess>& excesses, const Scorer& sc
         lateness.last == now && (!is_between || lateness.after.count(after) > 0);
     if (is_known || excess.excuse == Excuse::kAccepted ||
         excess.share <= model_->tuning().near_limit ||
-        !(is_held_up || (!is_back && !isAbsence(model_->finding(excess.track)) &&
-                         isOfLate(excess.track, scorer, events)))) {
+        !(is_held_up ||
+          (!isAbsence(model_->finding(excess.track)) && isOfLate(excess.track, scorer, events)))) {
       continue;
     }
     if (!isRecent(lateness.last, now)) {

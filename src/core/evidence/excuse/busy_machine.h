@@ -34,10 +34,9 @@ class BusyMachine {
  private:
   /// How late a component is.
   struct Lateness {
-    std::int64_t since = kNever;   // [ns]
-    std::int64_t last = kNever;    // end of the last window in which it was so [ns]
-    std::int64_t silent = kNever;  // and of the last one in which it was silent [ns]
-    std::set<std::size_t> after;   // components after which it was late, and itself
+    std::int64_t since = kNever;  // [ns]
+    std::int64_t last = kNever;   // end of the last window in which it was so [ns]
+    std::set<std::size_t> after;  // components after which it was late, and itself
   };
 
   /// Who is late at once; none: too few to tell.

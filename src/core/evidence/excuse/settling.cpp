@@ -36,14 +36,13 @@ void Settling::forgetStarts(std::int64_t now, Scorer& scorer) {
 }
 
 void Settling::leaveOut(std::int64_t now, std::vector<double>& evidence) const {
-  if (now >= latest_ + kRateSpan) {
+  if (now >= latest_) {
     return;
   }
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     const Track& watched = model_->tracks()[track];
-    const std::int64_t since = now - watched.channel->looksBack();
-    if (since < std::max(until_[watched.to], until_[watched.from]) ||
-        (since < all_until_ && watched.channel->finding() != Finding::kSilent)) {
+    if (now < std::max(until_[watched.to], until_[watched.from]) ||
+        (now < all_until_ && watched.channel->finding() != Finding::kSilent)) {
       evidence[track] = 0;
     }
   }

@@ -18,12 +18,11 @@ std::vector<Excess>& Excesses::closeWindow(const std::vector<double>& shares,
     while (before != excesses_.end() && before->track < track) {
       ++before;
     }
-    // A level does not know since when it has been so: since its span began.
+    // A level does not know since when it has been so: since it was seen.
     std::optional<std::int64_t> onset = scorer.onset(track);
     if (!onset) {
-      onset = before != excesses_.end() && before->track == track
-                  ? before->onset
-                  : scorer.heard().windowEnd() - model_->tracks()[track].channel->looksBack();
+      onset = before != excesses_.end() && before->track == track ? before->onset
+                                                                  : scorer.heard().windowEnd();
     }
     now.push_back({track, model_->componentIndex(model_->tracks()[track].to), *onset,
                    shares[track], Excuse::kNone});

@@ -106,8 +106,10 @@ std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
         suspect.reason.kind =
             suspect.reason.after.empty() ? Kind::kTopicSilent : Kind::kUnanswered;
       }
-      const bool is_left = each.wrong == Wrong::kOther;  // nobody else explains it
-      if (is_left ? each.abnormal && suspects.empty() : each.abnormal || !isUsual(suspect)) {
+      const bool is_explained = std::any_of(suspects.begin(), suspects.end(),
+                                            [](const Suspect& other) { return other.abnormal; });
+      if (each.wrong == Wrong::kOther ? each.abnormal && !is_explained
+                                      : each.abnormal || !isUsual(suspect)) {
         suspects.push_back(std::move(suspect));
       }
     }

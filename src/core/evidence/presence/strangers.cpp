@@ -4,8 +4,6 @@
 #include <set>
 #include <utility>
 
-#include "self_awareness/core/stream/recent_counts.h"
-
 namespace self_awareness::core::evidence {
 namespace {
 

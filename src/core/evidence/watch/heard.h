@@ -15,8 +15,8 @@
 
 namespace self_awareness::core::evidence {
 
-/// What was heard of a recording so far, as all channels need it: who came when last, how often,
-/// and whether the whole robot stood still (docs/method.md, sections 1.4 and 3.7).
+/// What was heard of a recording so far, as all channels need it: who came when last, and
+/// whether the whole robot stood still (docs/method.md, sections 1.4 and 3.7).
 class Heard {
  public:
   /// @param types number of event types

@@ -14,6 +14,7 @@ from self_awareness.stamps import SECOND_NS
 
 _LAST_OF_OPEN_BIN = 2.0
 _STEPS_OF_SPAN = 4
+_LEAST_SPAN_S = 1.0
 _BEFORE_S, _AFTER_S, _LONGEST_S = 20.0, 10.0, 120.0
 
 
@@ -122,12 +123,16 @@ def _rate(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Counts]:
         return None
     begin, end = judged.seconds(alarm.begin), judged.seconds(alarm.end)
     last = min(end + _AFTER_S, begin + _LONGEST_S, judged.seconds(judged.recording.end))
-    times = np.arange(max(begin - _BEFORE_S, reason.lasted), last,
-                      reason.lasted / _STEPS_OF_SPAN)
+    span = max(reason.lasted, _LEAST_SPAN_S)
+    usual = reason.usual * span
+    spread = max(min(reason.usual_longest - reason.usual, reason.usual) * reason.lasted
+                 * math.sqrt(span / reason.lasted), 1.0)
+    times = np.arange(max(begin - _BEFORE_S, span), last, span / _STEPS_OF_SPAN)
+    if not len(times):
+        return None
     stamps = (judged.edges_of(suspect.id)[1:-1] - judged.recording.origin) / SECOND_NS
     counts = (np.searchsorted(stamps, times, side='right')
-              - np.searchsorted(stamps, times - reason.lasted, side='right'))
-    return Counts(f'{judged.recording.event_types[suspect.id]} in {reason.lasted:g} s',
+              - np.searchsorted(stamps, times - span, side='right'))
+    return Counts(f'{judged.recording.event_types[suspect.id]} in {seconds(span)}',
                   times.tolist(), counts.tolist(),
-                  (reason.usual_shortest * reason.lasted, reason.usual_longest * reason.lasted),
-                  begin, end)
+                  (max(usual - spread, 0.0), usual + spread), begin, end)

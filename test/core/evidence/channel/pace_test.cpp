@@ -129,8 +129,9 @@ TEST_F(PaceTest, ASumThatReachedItsCapHasNoLimit) {
   EXPECT_TRUE(std::isnan(expected.limit(slower_, 200, 300)));
   const std::vector<Coverage> coverage =
       coverageOf(*model_, allLimits(*model_, kNone), {}, kWindow, false);
-  ASSERT_EQ(coverage[model_->componentIndex(kA)].blind.size(), 1U);
-  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].about, "pace");
+  ASSERT_EQ(coverage[model_->componentIndex(kA)].blind.size(), 2U);
+  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].about, "slower pace");
+  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[1].about, "faster pace");
   EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].topic, kTypes[kA].scope);
 }
 
@@ -196,6 +197,16 @@ TEST_F(PaceTest, ASuspectIsToldOfByTheNumberSinceTheSumBegan) {
   EXPECT_DOUBLE_EQ(reason.lasted, 4);
   EXPECT_EQ(reason.words, "10 in the last 4.0 s, usually 19 to 21");
   EXPECT_EQ(reason.after, "");
+}
+
+TEST_F(PaceTest, MessagesOfOneStampHaveANumberToo) {
+  add({now_, kA});
+  wait(kPeriod, 20);
+  for (int i = 0; i < 9; ++i) {
+    add({now_, kA});
+  }
+  const Reason reason = suspect(faster_).reason;
+  EXPECT_TRUE(std::isfinite(reason.value) && std::isfinite(reason.usual)) << reason.words;
 }
 
 TEST(PaceOfFewGaps, IsWatchedWhereTheyTellItFromAnotherOne) {

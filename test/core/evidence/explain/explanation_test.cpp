@@ -161,7 +161,7 @@ TEST_F(ExplanationTest, LongerGapsAreSaidAsAnotherRateNotAsASilence) {
   ASSERT_TRUE(isWatched(model_->tracks(), kSlower, kA, kA));
   const Suspect slow = suspects({{overdue(kA), 0.9}, {gaps, 1.2}}, end).at(0);
   EXPECT_EQ(slow.reason.kind, Kind::kSlow);
-  EXPECT_EQ(slow.reason.words, "10 in the last 6.9 s, usually 25 to 44");
+  EXPECT_EQ(slow.reason.words, "10 in the last 6.9 s, usually 30 to 40");
   EXPECT_EQ(suspects({{overdue(kA), 1.1}, {gaps, 1.2}}, end).at(0).reason.kind, Kind::kSilent);
 }
 

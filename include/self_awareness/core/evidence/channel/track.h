@@ -35,7 +35,7 @@ constexpr bool isAbsence(Finding finding) {
 
 /// The channel's name in model files and in Tuning::without.
 std::string channelName(const Track& track);
-/// The channel's name as people read it: overdue, rate, pairs, deadlines or its own.
+/// The channel's name as people read it: overdue, pace, pairs, deadlines or its own.
 std::string channelLabel(const Track& track);
 /// Names of all channels.
 std::vector<std::string> channelNames();
