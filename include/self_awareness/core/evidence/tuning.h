@@ -82,7 +82,7 @@ struct Tuning {
   double regular = 1.5;
   double fast = 2;
   double pauses = 10;
-  double prior_pauses = 8;
+  double prior_pauses = 2;
   double pauses_in_recording = 25;
   double most_of_training = 10;
   double least_deadline = 0.5;
