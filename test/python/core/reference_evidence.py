@@ -344,6 +344,13 @@ class ReferenceModel:
         return [min(math.log(0.5 + 0.5 * math.fsum(shares) / share), LEAST_PACE / 2)
                 for share, *shares in zip(usual, *others)]
 
+    def is_other_rate(self, track: Track, gaps: int, time: int) -> bool:
+        """Return whether so many gaps in such a time [ns] are fewer, or more, than usual."""
+        channel, kind, _ = track
+        if channel == 'slower':
+            return gaps < 0.9 * time / (SECOND * self.both.usual_delay(kind, kind, 0.5))
+        return gaps > 1.1 * time / self.both.mean_gap(kind)
+
     def step(self, track: Track, gap: int) -> float:
         """Return what a gap adds to the sum of another pace [nat]."""
         return self._steps[track][log_bin(gap)]

@@ -60,6 +60,7 @@ class Watch:
         self.arming = Arming()
         self.regime = 0.0
         self.behind = 0.0  # [ns]
+        self.gaps, self.lasted = 0, 0  # since the sum was 0 [ns]
         self.abnormal_since: Optional[int] = None
         self.abnormal_windows = 0
 
@@ -168,6 +169,10 @@ class ReferenceScorer:
         watch.behind = (min(max(watch.behind + gap - mean, 0.0), MOST_BEHIND)
                         if catches_up or gap > LATE * mean else 0.0)
         step = 0.0 if catches_up or waited else step
+        if watch.sum <= 0.0:
+            watch.gaps, watch.lasted = 0, 0
+        watch.gaps += 1
+        watch.lasted += gap
         watch.add(step)
         if waited:
             return
@@ -252,4 +257,7 @@ class ReferenceScorer:
             stood_still = self._stood_still(last[0], stall, stalled)
             return self._model.overdue(kind, max(end - last[0] - stood_still, 0))
         watch = self._watches[track]
+        if LABELS[channel] == 'pace' and not self._model.is_other_rate(track, watch.gaps,
+                                                                       watch.lasted):
+            return 0.0
         return watch.sum if watch.arming.armed else 0.0

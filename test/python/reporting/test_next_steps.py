@@ -83,7 +83,7 @@ def test_an_incident_has_the_log_and_the_commands(evidence_model: str, bag: str,
     assert '/scan' in info.find('selected_datasources').get('value').split(';')
     assert list(layout.iter('curve')) == []  # strings have no header with a stamp
     tab, = layout.iter('Tab')
-    assert tab.get('tab_name') == '/laser: 7 to 28 s'
+    assert tab.get('tab_name') == '/laser: 7 to 27 s'
 
 
 def test_plotjuggler_takes_the_layout_without_a_question(evidence_model: str, make_bag) -> None:

@@ -26,7 +26,7 @@ constexpr double kLeastTime = 1e-3;
 constexpr std::ptrdiff_t kSlightly = 2;
 constexpr std::ptrdiff_t kTwice = 4;
 constexpr std::ptrdiff_t kMostBins = 24;
-// Who comes as often as usual, and has other gaps, is neither slower nor faster.
+// Who comes as often as usual since the sum began, and has other gaps, has no other pace.
 constexpr double kSameRate = 0.1;
 
 using ByBin = std::array<double, kDelayBins>;
@@ -99,6 +99,12 @@ class ExpectedPaces : public Expectation {
   const Model& model() const { return model_; }
   double meanGap(std::size_t number) const { return mean_gaps_[number]; }  // [ns]
   EventId typeOf(std::size_t number) const { return model_.tracks()[tracks()[number]].to; }
+  /// Whether so many gaps in such a time [ns] are fewer, or more, than usual.
+  bool isOtherRate(std::size_t number, std::uint32_t gaps, double time) const {
+    const double usual = time / usual_gaps_[number];
+    return side_ == Pace::Side::kSlower ? gaps < (1 - kSameRate) * usual
+                                        : gaps > (1 + kSameRate) * usual;
+  }
   /// Says that so many gaps took so long [s].
   void describe(EventId id, std::uint32_t gaps, double time, Reason& reason) const;
 
@@ -107,6 +113,8 @@ class ExpectedPaces : public Expectation {
   Pace::Side side_;
   std::vector<ByBin> steps_;       // by number of the track
   std::vector<double> mean_gaps_;  // the same [ns]
+  // The same: of slower the median, since who pauses has longer mean gaps while it comes.
+  std::vector<double> usual_gaps_;
 };
 
 class PacesState : public ChannelState {
@@ -209,6 +217,8 @@ ExpectedPaces::ExpectedPaces(const Model& model, std::vector<std::size_t> tracks
     const EventId id = typeOf(number);
     steps_.push_back(stepsOf(model.learned().delays(id, id), side, model.tuning()));
     mean_gaps_.push_back(model.meanGap(id));
+    usual_gaps_.push_back(side == Pace::Side::kSlower ? model.usualDelay(id, id, 0.5)
+                                                      : model.meanGap(id));
   }
 }
 
@@ -225,9 +235,7 @@ void ExpectedPaces::describe(EventId id, std::uint32_t gaps, double time, Reason
   const double least = std::max(std::floor(usual - spread), 0.0);
   const double largest = std::ceil(usual + spread);
   const double number = gaps;
-  reason.kind = std::abs(number - usual) < kSameRate * usual ? Kind::kOutOfOrder
-                : side_ == Pace::Side::kSlower               ? Kind::kSlow
-                                                             : Kind::kFast;
+  reason.kind = side_ == Pace::Side::kSlower ? Kind::kSlow : Kind::kFast;
   reason.unit = unit::kHertz;
   reason.lasted = time;
   reason.value = number / time;
@@ -276,7 +284,9 @@ void PacesState::closeWindow(const Heard& heard, std::vector<double>& evidence) 
                                          heard.windowEnd(), arming_)) {
       pace.sum = 0;
     }
-    evidence[expected_.tracks()[number]] = pace.arming.armed() ? pace.sum : 0;
+    const auto time = static_cast<double>(pace.last - pace.since);
+    const bool counts = pace.arming.armed() && expected_.isOtherRate(number, pace.gaps, time);
+    evidence[expected_.tracks()[number]] = counts ? pace.sum : 0;
   }
 }
 

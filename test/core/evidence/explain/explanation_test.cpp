@@ -147,8 +147,7 @@ TEST_F(ExplanationTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
             std::log(model_->tuning().rare_silence));
   const Track fewer = trackOf(kSlower, kA, kA);
   // At half its rate its age is rare, too, but no more than that.
-  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 1.4}}, end).at(0).reason.kind,
-            Kind::kOutOfOrder);
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kSlow);
   EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kSilent);
 }
 
