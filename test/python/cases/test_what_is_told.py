@@ -66,8 +66,7 @@ def test_nodes_that_fall_silent_at_once_are_not_late(cases, tmp_path: Path) -> N
     assert [alarm['busy'] for alarm in recording['alarms']] == [None] * len(recording['alarms'])
 
 
-def test_two_thirds_of_the_rate_are_found_where_messages_come_in_clumps(cases,
-                                                                      tmp_path: Path) -> None:
+def test_two_thirds_of_the_rate_are_found_in_clumps(cases, tmp_path: Path) -> None:
     recording = of_its_own_robot(cases, 31, 'slow.bag', 8, 12, tmp_path)
     incident, = recording['incidents']
     assert (incident['cause'], incident['kind']) == ('/laser', 'slow')
