@@ -208,9 +208,10 @@ def test_a_model_of_no_release_is_one_line(tmp_path: Path, capsys) -> None:
 @pytest.mark.parametrize('name', FORMATS)
 def test_a_newer_file_is_read_if_it_says_so(name: str, tmp_path: Path, capsys) -> None:
     newest = RELEASES[-1]
-    path = with_version(newest / name, tmp_path / name, format=9, package='3.2.1', method=8)
+    path = with_version(newest / name, tmp_path / name, format=9, package='3.2.1',
+                        method=METHOD + 1)
     out = printed(capsys, Path(path))
-    assert f'self_awareness 3.2.1, format 9, method 8 (this is {METHOD})' in out
+    assert f'self_awareness 3.2.1, format 9, method {METHOD + 1} (this is {METHOD})' in out
     before = json.loads(printed(capsys, newest / name, '--json'))
     after = json.loads(printed(capsys, Path(path), '--json'))
     for summary in (before, after):
