@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr double kMost = 200;  // of a sum whose limit is not known
-// A gap that is a bin longer than the mean one, or more, makes its type late; what waited for
-// longer than that [ns] is no longer made up for.
+// Mean gaps: a longer one, by a bin, makes its type late.
 constexpr double kLate = 1.2;
-constexpr double kMostBehind = 2e9;
+// More than that is not made up for [ns].
+constexpr auto kMostBehind = static_cast<double>(kRateSpan);
 // Messages of one stamp took some time, too [s].
 constexpr double kLeastTime = 1e-3;
 // Other paces, in bins of a quarter of an octave: 0.7 of the rate or a half; and 1.4, 2 or more,
