@@ -81,6 +81,11 @@ TEST_F(PaceTest, AHiccupIsMadeUpForByTheGapsThatFollow) {
   const double once = slower();
   EXPECT_GT(once, 0);
   EXPECT_LT(once, model_->leastLimit(slower_)) << "one message is lost";
+  wait(2 * kPeriod);
+  EXPECT_LE(slower(), model_->leastLimit(slower_)) << "nor are two enough";
+  wait(kPeriod, 20);
+  wait(2 * kPeriod);
+  EXPECT_DOUBLE_EQ(slower(), once);
   wait(kPeriod);
   EXPECT_NEAR(slower(), once - std::log(2), 0.05) << "half of the gaps are of another pace";
   wait(kPeriod, 60);
@@ -109,6 +114,9 @@ TEST_F(PaceTest, WhatWaitedAndComesAtOnceIsNotFaster) {
 TEST_F(PaceTest, WhatIsLostOnTheWayIsNotSlower) {
   add({now_, kA});
   wait(kPeriod, 10);
+  for (std::int64_t at = 10 * kMillisecond; at < kLong; at += 10 * kMillisecond) {
+    add({now_ + at, kC});  // the robot does not stand still
+  }
   Event event{now_ += kLong, kA};
   event.attributes.step = Attributes::Step::kLostOne;
   add(event);
