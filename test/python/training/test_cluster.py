@@ -42,7 +42,7 @@ class Cluster:
         self.client = distributed.Client(self.address, set_as_default=False)
 
     def add_worker(self, name: str, path: Optional[str] = None) -> None:
-        """Start a worker, with one thread.
+        """Start a worker, with one thread; return when it works.
 
         Args:
             name: of the worker.
@@ -52,6 +52,8 @@ class Cluster:
             'worker', self.address, '--name', name, '--nthreads', '1', '--no-nanny',
             '--local-directory', str(self.folder / name), '--worker-port', '0', path=path)
         wait_until(lambda: self.address_of(name), f'worker {name} starts')
+        # The scheduler knows it before it takes tasks: who is stopped then never gets one.
+        self.client.submit(int, workers=[self.address_of(name)], pure=False).result(DEADLINE_S)
 
     def address_of(self, name: str) -> str:
         """Return where a worker listens; '': it is not there."""
