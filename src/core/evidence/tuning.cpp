@@ -46,7 +46,7 @@ const std::vector<TuningNumber>& tuningNumbers() {
       {"fewest_of_broadcast", &Tuning::fewest_of_broadcast, 1, 1e6, "",
        "Nodes that hear a topic from which on it may be for everybody.", std::nullopt},
       {"least_told", &Tuning::least_told, 0, 1e6, "nat",
-       "How much the gaps of training speak against another pace, for it to be watched.", 0},
+       "How much the gaps of training, or else those of now, speak about another pace.", 0},
       {"least_pace", &Tuning::least_pace, 1e-3, 1e3, "nat", "Least limit of another pace.",
        std::nullopt},
       {"most_surprise", &Tuning::most_surprise, 0.1, 1e3, "deviations",

@@ -150,7 +150,8 @@ class ReferenceScorer:
             if track[1] == kind and track[0] == 'pairs':
                 self._add_delay(watch, t, track)
             elif track[1] == kind and own is not None:
-                self._add_gap(watch, t - own[0], track, self._has_waited(t))
+                self._add_gap(watch, t - own[0], track,
+                              t == own[0] or self._has_waited(t))
         for track in self._model.tracks:
             if track[0] in ('deadlines', 'company'):
                 if track[1] == kind:

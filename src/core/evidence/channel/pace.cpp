@@ -88,7 +88,7 @@ class ExpectedPaces : public Expectation {
   ExpectedPaces(const Model& model, std::vector<std::size_t> tracks, Pace::Side side);
 
   std::unique_ptr<ChannelState> start() const override;
-  double leastLimit(std::size_t /*track*/) const override { return model_.tuning().least_pace; }
+  double leastLimit(std::size_t track) const override { return least_[numberOf(track)]; }
   double limit(std::size_t /*track*/, double largest, double most) const override {
     // Nobody knows how far a sum would have grown that ended at its cap.
     return largest < kMost ? most : std::numeric_limits<double>::quiet_NaN();
@@ -112,6 +112,7 @@ class ExpectedPaces : public Expectation {
   const Model& model_;
   Pace::Side side_;
   std::vector<ByBin> steps_;       // by number of the track
+  std::vector<double> least_;      // limits [nat], the same
   std::vector<double> mean_gaps_;  // the same [ns]
   // The same: of slower the median, since who pauses has longer mean gaps while it comes.
   std::vector<double> usual_gaps_;
@@ -130,8 +131,9 @@ class PacesState : public ChannelState {
     OfType& pace = paces_[number];
     const std::int64_t gap = arrival.stamp - arrival.last_stamp;
     double step = expected_.step(number, gap);
-    // Who loses messages on the way is not slow: Lost tells it.
-    const bool counts = !arrival.stalled && !arrival.attributes.isAfterLoss();
+    // Who loses messages on the way is not slow: Lost tells it. While a simulation stands still, no
+    // time passes, and nothing has a pace.
+    const bool counts = gap != 0 && !arrival.stalled && !arrival.attributes.isAfterLoss();
     if (pace.catchesUp(static_cast<double>(gap), step, expected_.meanGap(number)) || !counts) {
       step = 0;
     }
@@ -215,7 +217,12 @@ ExpectedPaces::ExpectedPaces(const Model& model, std::vector<std::size_t> tracks
     : Expectation(std::move(tracks)), model_(model), side_(side) {
   for (std::size_t number = 0; number < this->tracks().size(); ++number) {
     const EventId id = typeOf(number);
-    steps_.push_back(stepsOf(model.learned().delays(id, id), side, model.tuning()));
+    const DelayHistogram gaps = model.learned().delays(id, id);
+    steps_.push_back(stepsOf(gaps, side, model.tuning()));
+    // What training does not tell, the gaps of now have to, also where messages come in clumps.
+    const Tuning& tuning = model.tuning();
+    const bool is_told = toldBy(gaps, steps_.back()) >= tuning.least_told;
+    least_.push_back(is_told ? tuning.least_pace : tuning.least_told);
     mean_gaps_.push_back(model.meanGap(id));
     usual_gaps_.push_back(side == Pace::Side::kSlower ? model.usualDelay(id, id, 0.5)
                                                       : model.meanGap(id));
@@ -295,10 +302,7 @@ void PacesState::closeWindow(const Heard& heard, std::vector<double>& evidence) 
 std::vector<Track> Pace::watch(const Choice& choice) const {
   std::vector<Track> tracks;
   for (EventId id = 0; id < choice.both.size(); ++id) {
-    const DelayHistogram gaps = choice.both.delays(id, id);
-    // Gaps that differ by much are told from another pace by many of them only.
-    if (choice.isJudged(id) &&
-        toldBy(gaps, stepsOf(gaps, side_, choice.tuning)) >= choice.tuning.least_told) {
+    if (choice.isJudged(id)) {
       tracks.push_back({this, id, id});
     }
   }

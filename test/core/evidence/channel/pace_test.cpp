@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "channel_case.h"
@@ -15,6 +16,10 @@ namespace {
 
 constexpr std::int64_t kLong = 400 * kMillisecond;
 constexpr std::int64_t kShort = 100 * kMillisecond;
+
+double leastOf(const Model& model, const std::string& pace, EventId id) {
+  return model.leastLimit(indexOf(model.tracks(), pace, id, id));
+}
 
 // A is a timer; what comes at random beside it says nothing of it.
 class PaceTest : public ChannelTest {
@@ -109,6 +114,26 @@ TEST_F(PaceTest, WhatWaitedAndComesAtOnceIsNotFaster) {
   wait(kPeriod, 3);
   wait(kPeriod / 4, 9);
   EXPECT_GT(faster(), model_->leastLimit(faster_)) << "nothing waited";
+}
+
+TEST_F(PaceTest, WhileNoTimePassesNothingHasAPace) {
+  add({now_, kA});
+  wait(kPeriod, 10);
+  for (int i = 0; i < 100; ++i) {
+    add({now_, kA});  // a simulation is paused, and a timer of wall time goes on
+  }
+  EXPECT_EQ(faster(), 0);
+}
+
+TEST(SeldomPaceTest, WhoseGapsTellLittleNeedsAFlood) {
+  const auto countsOfSeldom = [](unsigned seed) {
+    return startOf(together({timer(kA, 0, 100 * kSecond, kPeriod),
+                             irregular(kC, 0, 100 * kSecond, 5 * kSecond, seed)}),
+                   seed);
+  };
+  const Model model(watch(countsOfSeldom(1), countsOfSeldom(2)));
+  EXPECT_EQ(leastOf(model, kFaster, kA), Tuning{}.least_pace);
+  EXPECT_EQ(leastOf(model, kFaster, kC), Tuning{}.least_told);
 }
 
 TEST_F(PaceTest, WhatIsLostOnTheWayIsNotSlower) {
@@ -217,21 +242,21 @@ TEST_F(PaceTest, MessagesOfOneStampHaveANumberToo) {
   EXPECT_TRUE(std::isfinite(reason.value) && std::isfinite(reason.usual)) << reason.words;
 }
 
-TEST(PaceOfFewGaps, IsWatchedWhereTheyTellItFromAnotherOne) {
-  const auto watched = [](int gaps, bool regular) {
+TEST(PaceOfFewGaps, NeedsMoreWhereTheyDoNotTellItFromAnotherOne) {
+  const auto isTold = [](int gaps, bool regular) {
     const std::int64_t end = gaps * kSecond + 1;
     const auto start = [&](unsigned seed) {
       const Events own =
           regular ? timer(kA, 0, end, kSecond) : irregular(kA, 0, end, kSecond, seed);
       return together({own, timer(kC, 0, end, kPeriod)});
     };
-    return isWatched(Model(watch(countsOf({start(1)}), countsOf({later(start(2))}))).tracks(),
-                     kSlower, kA, kA);
+    const Model model(watch(countsOf({start(1)}), countsOf({later(start(2))})));
+    return leastOf(model, kSlower, kA) == Tuning{}.least_pace;
   };
-  EXPECT_FALSE(watched(static_cast<int>(Tuning{}.fewest_gaps), true));
-  EXPECT_TRUE(watched(100, true));
-  EXPECT_FALSE(watched(100, false)) << "by chance, a hundred come as seldom";
-  EXPECT_TRUE(watched(5000, false));
+  EXPECT_FALSE(isTold(static_cast<int>(Tuning{}.fewest_gaps), true));
+  EXPECT_TRUE(isTold(100, true));
+  EXPECT_FALSE(isTold(100, false)) << "by chance, a hundred come as seldom";
+  EXPECT_TRUE(isTold(5000, false));
 }
 
 }  // namespace

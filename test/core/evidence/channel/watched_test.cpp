@@ -51,7 +51,6 @@ TEST(EvidenceTracks, FewGapsAreNotJudged) {
   EXPECT_TRUE(few.empty());
   const std::vector<Track> enough = chosen(gapsOf(kA, needed - 10), gapsOf(kA, 10));
   EXPECT_TRUE(isWatched(enough, kOverdue, kA, kA));
-  EXPECT_EQ(enough.size(), 1U) << "they say nothing of its pace";
 }
 
 TEST(EvidenceTracks, FewDelaysAreNoPair) {
