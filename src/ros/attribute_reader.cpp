@@ -9,23 +9,36 @@
 namespace self_awareness::ros1 {
 namespace {
 
-bool beginsWithHeader(const std::string& definition, const std::string& datatype) {
+/// Where the header of messages begins [bytes]: at once, or, as transforms have one each and their
+/// message has none, behind the length of the array that messages begin with. None: nowhere.
+/// @param behind_length [bytes]
+std::optional<std::size_t> placeOfHeader(const std::string& definition,
+                                         const std::string& datatype, std::size_t behind_length) {
   const MessageDefinition::Lines header{
       {"uint32", "", "seq"}, {"time", "", "stamp"}, {"string", "", "frame_id"}};
   try {
     const MessageDefinition types(definition, datatype);
-    const MessageDefinition::Lines& fields = types.linesOf(datatype);
-    return !fields.empty() && fields.front().type == "std_msgs/Header" &&
-           fields.front().array.empty() && types.linesOf("std_msgs/Header") == header;
+    const auto beginsWith = [&](const std::string& type, const std::string& array) {
+      const MessageDefinition::Lines& fields = types.linesOf(type);
+      return !fields.empty() && fields.front().array == array ? fields.front().type : "";
+    };
+    const bool in_array = !beginsWith(datatype, "[]").empty();
+    const std::string first =
+        in_array ? beginsWith(beginsWith(datatype, "[]"), "") : beginsWith(datatype, "");
+    if (first == "std_msgs/Header" && types.linesOf(first) == header) {
+      return in_array ? behind_length : 0;
+    }
   } catch (const std::invalid_argument&) {
-    return false;  // too long, or without the definition of the header
+    // Too long, or without the definition of a type that it begins with.
   }
+  return std::nullopt;
 }
 
 }  // namespace
 
 AttributeReader::AttributeReader(const Connection& connection)
-    : has_header_(beginsWithHeader(connection.definition, connection.datatype)),
+    : place_(placeOfHeader(connection.definition, connection.datatype, kLengthOfArray)),
+      header_end_(place_ ? *place_ + kHeader : 0),
       is_read_(connection.datatype != "rosgraph_msgs/Log"),
       is_numbered_(!connection.latching) {}
 
@@ -41,16 +54,19 @@ void AttributeReader::add(const std::uint8_t* data, std::size_t size) {
   if (!is_read_) {
     return;
   }
-  std::uint64_t skipped = 0;
-  if (has_header_ && position_ < kHeader) {
-    skipped = std::min<std::uint64_t>(kHeader - position_, size);
-    std::copy_n(data, skipped, header_.begin() + static_cast<std::ptrdiff_t>(position_));
-    position_ += skipped;
-    if (position_ == kHeader) {
-      content_ = std::min(kHeader + std::uint64_t{numberAt(kHeader - 4)}, size_);
+  if (position_ < header_end_) {
+    const std::uint64_t of_header = std::min<std::uint64_t>(header_end_ - position_, size);
+    std::copy_n(data, of_header, header_.begin() + static_cast<std::ptrdiff_t>(position_));
+    if (isFirst()) {
+      position_ += of_header;
+      data += of_header;
+      size -= of_header;
+      if (position_ == kHeader) {
+        content_ = std::min(kHeader + std::uint64_t{numberAt(kHeader - 4)}, size_);
+      }
     }
   }
-  sample(data + skipped, size - skipped);
+  sample(data, size);
 }
 
 template <typename Function>
@@ -70,8 +86,8 @@ AttributeReader::Part AttributeReader::next() const {
   if (!is_read_) {
     return {size_, size_};
   }
-  if (has_header_ && position_ < kHeader) {
-    return {position_, std::min<std::uint64_t>(kHeader, size_)};
+  if (position_ < header_end_) {
+    return {position_, std::min<std::uint64_t>(header_end_, size_)};
   }
   Part part{size_, size_};
   forEachSample([&](std::uint64_t from, std::uint64_t to) {
@@ -103,7 +119,7 @@ core::Attributes AttributeReader::end(std::int64_t now) {
   attributes.same = last_same_ = last_content_ == content && sample_ == last_sample_;
   last_content_ = content;
   sample_.swap(last_sample_);
-  if (has_header_ && position_ >= kHeader) {
+  if (place_ && position_ >= header_end_ && (isFirst() || numberAt(0) > 0)) {
     readHeader(now, attributes);
   }
   return attributes;
@@ -128,12 +144,15 @@ std::uint32_t AttributeReader::numberAt(std::size_t place) const {
 }
 
 void AttributeReader::readHeader(std::int64_t now, core::Attributes& attributes) {
-  const std::uint32_t number = numberAt(0);
-  if (last_number_ && is_numbered_) {
-    attributes.step = core::stepOf(*last_number_, number);
+  if (isFirst()) {
+    const std::uint32_t number = numberAt(0);
+    if (last_number_ && is_numbered_) {
+      attributes.step = core::stepOf(*last_number_, number);
+    }
+    last_number_ = number;
   }
-  last_number_ = number;
-  const std::int64_t stamp = std::int64_t{numberAt(4)} * 1000000000 + std::int64_t{numberAt(8)};
+  const std::int64_t stamp =
+      std::int64_t{numberAt(*place_ + 4)} * 1000000000 + std::int64_t{numberAt(*place_ + 8)};
   attributes.age = stamp == 0 ? core::Attributes::kZeroStamp : core::ageClass(now - stamp);
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <sensor_msgs/Image.h>
 #include <std_msgs/String.h>
+#include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
 #include <string>
@@ -58,6 +59,10 @@ TEST(AttributeReader, KnowsAHeaderByTheDefinition) {
   EXPECT_TRUE(readerOf("std_msgs/Header h\n" + header, "a/B").hasHeader());
   EXPECT_FALSE(readerOf("int8 x\nHeader header\n" + header, "a/B").hasHeader());
   EXPECT_FALSE(readerOf("Header[] headers\n" + header, "a/B").hasHeader());
+  const std::string element = "====\nMSG: a/C\nHeader header\n" + header;
+  EXPECT_TRUE(readerOf("C[] all\n" + element, "a/B").hasHeader());
+  EXPECT_FALSE(readerOf("int8 x\nC[] all\n" + element, "a/B").hasHeader());
+  EXPECT_FALSE(readerOf("C[2] both\n" + element, "a/B").hasHeader());
   EXPECT_FALSE(
       readerOf("Header header\n====\nMSG: std_msgs/Header\nuint8 other\n", "a/B").hasHeader());
 }
@@ -80,6 +85,27 @@ TEST(AttributeReader, ReadsAgeNumberSizeAndContent) {
     EXPECT_LT(core::ageOf(third.age), -2);
     EXPECT_FALSE(third.same);
     EXPECT_FALSE(read(reader, serialized(image(9, 0, 99999)), piece).same);
+  }
+}
+
+TEST(AttributeReader, TheFirstOfAnArrayTellsTheAge) {
+  visualization_msgs::MarkerArray message;
+  const std::size_t empty = serialized(message).size();
+  message.markers.resize(2);
+  message.markers[0].header = image(7, 3).header;
+  message.markers[1].header = image(9, 0.1).header;
+  for (const std::size_t piece : {1, 7, 1000000}) {
+    AttributeReader reader = readerOf<visualization_msgs::MarkerArray>();
+    const Attributes found = read(reader, serialized(message), piece);
+    EXPECT_EQ(found.age, core::ageClass(3 * core::kNanosecondsPerSecond));
+    EXPECT_FALSE(reader.number()) << "each has one of its own";
+    EXPECT_TRUE(read(reader, serialized(message), piece).same);
+    message.markers[0].header.stamp += ros::Duration(1);
+    EXPECT_FALSE(read(reader, serialized(message), piece).same) << "the header is content";
+    message.markers[0].header.stamp -= ros::Duration(1);
+    EXPECT_EQ(read(reader, std::vector<std::uint8_t>(empty), piece).age, Attributes::kNoAge);
+    EXPECT_EQ(read(reader, std::vector<std::uint8_t>(40), piece).age, Attributes::kNoAge)
+        << "what comes behind an empty array is no header";
   }
 }
 

@@ -21,10 +21,12 @@ class AttributeReader {
   static constexpr std::uint64_t kBlocks = 8;
   static constexpr std::uint64_t kBlock = 512;  ///< [bytes]
 
-  /// @param connection messages whose definition does not begin with a std_msgs/Header are without
-  /// one. Of rosgraph_msgs/Log, nothing is known: its lines are for people, of any length, and the
-  /// same one may come again and again. A latching publisher of rospy also numbers the copies that
-  /// new subscribers get: its numbers say nothing of losses.
+  /// @param connection messages whose definition does not begin with a std_msgs/Header, or with an
+  /// array of something that does (tf2_msgs/TFMessage), are without one. In an array, that of the
+  /// first element tells the age, but no number, and is compared as content. Of rosgraph_msgs/Log,
+  /// nothing is known: its lines are for people, of any length, and the same one may come again
+  /// and again. A latching publisher of rospy also numbers the copies that new subscribers get:
+  /// its numbers say nothing of losses.
   explicit AttributeReader(const Connection& connection);
 
   /// Begins a message.
@@ -49,13 +51,14 @@ class AttributeReader {
   /// @param size of the whole message [bytes]
   core::Attributes skip(std::uint64_t size);
 
-  bool hasHeader() const { return has_header_; }
+  bool hasHeader() const { return place_.has_value(); }
   /// The number of the last message (header.seq); none: it has none.
   std::optional<std::uint32_t> number() const { return last_number_; }
 
  private:
   static constexpr std::size_t kHeader =
       16;  // header.seq, header.stamp and the length of frame_id
+  static constexpr std::size_t kLengthOfArray = 4;  // [bytes]
 
   /// Calls the function with each part of the message that is compared with that of the one
   /// before.
@@ -65,13 +68,17 @@ class AttributeReader {
   std::uint32_t numberAt(std::size_t place) const;
   void readHeader(std::int64_t now, core::Attributes& attributes);
 
-  bool has_header_ = false;
+  /// Whether messages begin with their header.
+  bool isFirst() const { return place_ == std::size_t{0}; }
+
+  std::optional<std::size_t> place_;  // of the header [bytes]; none: there is none
+  std::size_t header_end_ = 0;        // of its part that is read [bytes]
   bool is_read_ = true;
   bool is_numbered_ = true;
   std::uint64_t size_ = 0;      // of the message [bytes]
   std::uint64_t position_ = 0;  // in it [bytes]
   std::uint64_t content_ = 0;   // where its header has ended [bytes]
-  std::array<std::uint8_t, kHeader> header_{};
+  std::array<std::uint8_t, kLengthOfArray + kHeader> header_{};
   std::vector<std::uint8_t> sample_;
   // Of the message before:
   std::optional<std::uint64_t> last_content_;  // behind its header [bytes]; none: there was none
