@@ -214,8 +214,8 @@ void Learner::startRecording(const Recording& recording, std::uint64_t fingerpri
 }
 
 void Learner::countEvent(const Event& event) {
-  if (vocabulary().tellsMode(event.id)) {
-    // The paper knows no modes.
+  if (vocabulary().tellsMode(event.id) || vocabulary().isLatched(event.id)) {
+    // The paper knows no modes, and nothing without delays.
   } else if (parameters_.counting.paper) {
     trainers_->paper.add(event);
   } else {

@@ -56,6 +56,7 @@ KeptLogs::KeptLogs(const KeptLogsParameters& parameters, std::function<ros1::Log
 
 void KeptLogs::setModel(const std::string& path, bool calibrated) {
   mode_.reset();
+  latched_.clear();
   folder_ = enabled() && calibrated ? filesystem::absolute(path).string() + kBeside : "";
 }
 
@@ -77,9 +78,14 @@ void KeptLogs::onEvent(const core::Event& event, const core::Vocabulary& vocabul
     if (mode_) {
       packer_->add({first_, *mode_}, vocabulary);
     }
+    for (const core::EventId id : latched_) {
+      packer_->add({first_, id}, vocabulary);
+    }
   }
   if (vocabulary.tellsMode(event.id)) {
     mode_ = event.id;
+  } else if (vocabulary.isLatched(event.id)) {
+    latched_.insert(event.id);
   }
   last_ = std::max(last_, event.stamp);
   if (why_.empty()) {  // else nobody will read it
@@ -150,6 +156,7 @@ void KeptLogs::write() {
 void KeptLogs::onRobotStart(std::int64_t at) {
   endStretch();
   mode_.reset();
+  latched_.clear();
   robot_start_ = at;
 }
 

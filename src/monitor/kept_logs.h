@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,7 @@ class KeptLogs : public Part {
   std::int64_t first_ = 0;             // of the stretch
   std::int64_t last_ = 0;              // up to where all of it was heard
   std::optional<core::EventId> mode_;  // that was told last: each stretch begins with it
+  std::set<core::EventId> latched_;    // and with what is held ready
   std::string why_;                    // it is not normal; empty: it is, so far
   std::int64_t named_at_ = 0;          // wall time that the last file is named by [ns]
   Report report_;

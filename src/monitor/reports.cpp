@@ -53,7 +53,8 @@ void Reports::onCut(Cut why) {
 }
 
 void Reports::onEvent(const core::Event& event, const core::Vocabulary& vocabulary) {
-  if (!vocabulary.tellsMode(event.id)) {  // else its message is another event
+  // Else its message is another event, or none.
+  if (!vocabulary.tellsMode(event.id) && !vocabulary.isLatched(event.id)) {
     heard_.add(event);
   }
 }

@@ -43,6 +43,9 @@ class EvidenceRows : public core::WindowObserver {
       scorer_.enter(event);
       return std::nullopt;
     }
+    if (model_.vocabulary().isLatched(event.id)) {
+      return std::nullopt;
+    }
     return core::ObservedEvent{event, !model_.knows(event.id), scorer_.add(event)};
   }
   void close(const core::Window& window, std::int64_t /*end*/) override {

@@ -106,6 +106,8 @@ void EventRecorder::finish() {
 void EventRecorder::onEvent(const core::Event& event) {
   if (vocabulary_.tellsMode(event.id)) {
     mode_ = event.id;
+  } else if (vocabulary_.isLatched(event.id)) {
+    latched_.insert(event.id);
   }
   if (!file_) {
     return;
@@ -135,6 +137,7 @@ void EventRecorder::onMasterRestart(std::int64_t now) {
   ROS_WARN("the master was restarted: the next recording is of another start of the robot");
   robot_start_ = wallNow();
   mode_.reset();
+  latched_.clear();
   end(now);
 }
 
@@ -183,6 +186,9 @@ void EventRecorder::begin(std::int64_t now) {
     start_publisher_.publish(start);
     if (mode_) {
       packer_->add({now, *mode_}, vocabulary_);
+    }
+    for (const core::EventId id : latched_) {
+      packer_->add({now, id}, vocabulary_);
     }
     began_ = steadyNow();
     problem_.clear();

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "node/live_source.h"
@@ -109,6 +110,7 @@ class EventRecorder : public NodeProgram, public LiveSource::Listener {
   Parameters parameters_;
   core::Vocabulary vocabulary_;
   std::optional<core::EventId> mode_;  // that was told last: each recording begins with it
+  std::set<core::EventId> latched_;    // and with what is held ready
   ros::Publisher diagnostics_;
   ros::Publisher start_publisher_;
   ros::ServiceServer finish_;

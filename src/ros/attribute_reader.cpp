@@ -22,11 +22,10 @@ std::optional<std::size_t> placeOfHeader(const std::string& definition,
       const MessageDefinition::Lines& fields = types.linesOf(type);
       return !fields.empty() && fields.front().array == array ? fields.front().type : "";
     };
-    const bool in_array = !beginsWith(datatype, "[]").empty();
-    const std::string first =
-        in_array ? beginsWith(beginsWith(datatype, "[]"), "") : beginsWith(datatype, "");
+    const std::string element = beginsWith(datatype, "[]");
+    const std::string first = beginsWith(element.empty() ? datatype : element, "");
     if (first == "std_msgs/Header" && types.linesOf(first) == header) {
-      return in_array ? behind_length : 0;
+      return element.empty() ? 0 : behind_length;
     }
   } catch (const std::invalid_argument&) {
     // Too long, or without the definition of a type that it begins with.

@@ -11,8 +11,10 @@
 #include <tuple>
 #include <utility>
 
+#include "message_definition.h"
 #include "name_patterns.h"
 #include "name_renames.h"
+#include "self_awareness/core/stream/latched.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/siblings.h"
 #include "self_awareness/ros/stable_name.h"
@@ -73,6 +75,31 @@ std::string inShort(double value) {
     }
   }
   return text;
+}
+
+/// The field by which the messages of a connection say what they do: that of their type, or that
+/// of a type which one of their own fields has, as the results of actions have a status of their
+/// goal. Empty: none does.
+std::string typeFieldOf(const EncodingRules& rules, const Connection& connection) {
+  const auto own = rules.type_fields.find(connection.datatype);
+  if (own != rules.type_fields.end()) {
+    return own->second;
+  }
+  try {
+    const MessageDefinition definition(connection.definition, connection.datatype);
+    for (const MessageDefinition::Line& line : definition.linesOf(connection.datatype)) {
+      const auto field = rules.type_fields.find(line.type);
+      const bool has_classes = rules.classes.count(line.type) > 0;  // of messages of that type
+      if (field != rules.type_fields.end() && line.array.empty() && !has_classes) {
+        const std::string path = line.name + "." + field->second;
+        definition.field(path);
+        return path;
+      }
+    }
+  } catch (const std::invalid_argument&) {
+    // It cannot be read, and nobody asked for it.
+  }
+  return "";
 }
 
 /// @throw std::invalid_argument if the mode that is there cannot be told
@@ -183,14 +210,15 @@ void checkEventTypes(const EncodingRules& rules, const core::Vocabulary& vocabul
           " values; name a field that says what the robot does");
     }
     const std::size_t datatype_end = type.type.find('[');
-    if (datatype_end == std::string::npos) {
+    const std::size_t field_end = type.type.find('=', datatype_end);
+    if (field_end == std::string::npos) {
       continue;
     }
     const std::string datatype = type.type.substr(0, datatype_end);
-    const auto field = rules.type_fields.find(datatype);  // none: somebody's type is called so
-    if (field != rules.type_fields.end() && ++types[datatype] > kMostTypesOfField) {
-      throw std::invalid_argument("the type field " + datatype + ": " + field->second +
-                                  " has more than " + std::to_string(kMostTypesOfField) +
+    if (++types[datatype] > kMostTypesOfField) {
+      const std::string field = type.type.substr(datatype_end + 1, field_end - datatype_end - 1);
+      throw std::invalid_argument("the type field " + datatype + ": " + field + " has more than " +
+                                  std::to_string(kMostTypesOfField) +
                                   " values; name a field that says what a message does, or none "
                                   "for this datatype");
     }
@@ -222,7 +250,8 @@ std::string whyLeftOut(const Connection& connection) {
              printable(connection.topic, kLongestQuote) + " is too long";
     }
   }
-  if (core::tellsMode({"", "", connection.datatype})) {  // nobody else makes modes up
+  const core::EventType made_up{"", "", connection.datatype};
+  if (core::tellsMode(made_up) || core::isLatched(made_up)) {  // nobody else makes them up
     return "the name '" + printable(connection.datatype, kLongestQuote) + "' on the topic " +
            printable(connection.topic, kLongestQuote) + " is no name of a type";
   }
@@ -247,6 +276,13 @@ bool ConnectionEncoder::accept() {
   const bool accepted = !skip_next_;
   skip_next_ = false;
   return accepted;
+}
+
+std::optional<core::EventId> ConnectionEncoder::latched() {
+  if (type_.type == "rosgraph_msgs/Log") {
+    return std::nullopt;
+  }
+  return ids_({type_.source, type_.scope, core::typeOfLatched(type_.type)});
 }
 
 core::EventId ConnectionEncoder::id() {
@@ -364,16 +400,16 @@ std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) 
   encoder.ids_ = ids_;
   encoder.type_ = *type;
   encoder.skip_next_ = connection.latching && !isRostopic(stableName(connection.callerid));
-  const auto field = rules_.type_fields.find(connection.datatype);
-  if (field != rules_.type_fields.end()) {
+  const std::string field = typeFieldOf(rules_, connection);
+  if (!field.empty()) {
     const auto classes = rules_.classes.find(connection.datatype);
     const bool numeric = classes != rules_.classes.end();
     encoder.field_ = std::make_shared<const MessageField>(
-        connection.definition, connection.datatype, field->second,
+        connection.definition, connection.datatype, field,
         numeric ? MessageField::Kind::kNumber : MessageField::Kind::kText);
-    encoder.field_name_ = field->second;
+    encoder.field_name_ = field;
     if (numeric && classes->second.bounds.empty()) {
-      throw std::invalid_argument("the classes of " + connection.datatype + ": " + field->second +
+      throw std::invalid_argument("the classes of " + connection.datatype + ": " + field +
                                   " are not learned yet: train learns them from bags");
     }
     if (numeric) {

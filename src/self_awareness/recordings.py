@@ -338,6 +338,8 @@ def unknown(model: TrainedModel, recording: RecordingEvents) -> Unknown:
     counts, unheard = np.bincount(recording.ids), model.unheard
     for index in recording.heard[recording.heard >= len(model.event_types)].tolist():
         kind = recording.event_types[index]
+        if kind.is_latched:
+            continue
         (found.modes if kind.tells_mode else found.unheard if (kind.source, kind.scope) in unheard
          else found.new).append((int(counts[index]), str(kind)))
     for each in found:

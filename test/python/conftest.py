@@ -231,3 +231,23 @@ def scored(cases: Cases, tmp_path: Path) -> Callable[..., Any]:
         recordings: 'list[Dict[str, Any]]' = json.loads(said.read_text('utf-8'))['recordings']
         return recordings
     return scored
+
+
+@pytest.fixture
+def of_its_own_robot(cases: Cases, tmp_path: Path) -> Callable[..., Any]:
+    """Return a function that says what is said of a recording of a case with its own robot."""
+    from self_awareness.commands import calibrate, score, train
+
+    def of_its_own_robot(name: str, recording: str, training: int = 4, normal: int = 6) -> Any:
+        subprocess.run([sys.executable, '-B', str(cases.folder / name / 'make.py')], check=True,
+                       env={**os.environ, 'OUT': str(tmp_path)}, stdout=subprocess.DEVNULL)
+        bags = [str(tmp_path / f'n{place}.bag') for place in range(1, normal + 1)]
+        model, said = str(tmp_path / 'm'), tmp_path / 'said.json'
+        assert train.main([*bags[:training], '-o', model]) == 0
+        assert calibrate.main(['--model', model, '--normal', *bags[training:],
+                               '-o', model]) == 0
+        assert score.main([str(tmp_path / recording), '--model', model,
+                           '--json', str(said)]) == 0
+        found, = json.loads(said.read_text('utf-8'))['recordings']
+        return found
+    return of_its_own_robot

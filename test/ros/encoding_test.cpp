@@ -313,6 +313,40 @@ TEST_F(EncoderTest, ToolsOfPeopleWhoWatchUseNoTopic) {
   }
 }
 
+TEST_F(EncoderTest, WhatIsLatchedOnlySaysThatItIsThere) {
+  Connection connection = scan();
+  connection.latching = true;
+  auto encoder = makeEncoder(EncodingRules::defaults()).connect(connection);
+  EXPECT_FALSE(encoder->accept());
+  const core::EventId latched = encoder->latched().value();
+  EXPECT_TRUE(vocabulary_.isLatched(latched));
+  EXPECT_EQ(core::toString(vocabulary_.at(latched)),
+            "/player /scan sensor_msgs/LaserScan[latched]");
+  EXPECT_TRUE(encoder->accept()) << "the second one was published now";
+  EXPECT_FALSE(vocabulary_.isLatched(encoder->id()));
+  connection.datatype = "rosgraph_msgs/Log";
+  EXPECT_FALSE(makeEncoder(EncodingRules()).connect(connection)->latched());
+  connection.datatype = "a/B[latched]";
+  EXPECT_NE(whyLeftOut(connection), "");
+}
+
+TEST_F(EncoderTest, AFieldOfATypeInMessagesIsTheirs) {
+  Connection connection{"/arm", "/move/result", "arm/MoveActionResult", "", false, ""};
+  connection.definition =
+      "a/Goal[] others\na/Goal status\n====\nMSG: a/Goal\nuint8 ACTIVE=1\nuint8 status\n";
+  EncodingRules rules;
+  rules.type_fields = {{"a/Goal", "status"}};
+  auto encoder = makeEncoder(rules).connect(connection);
+  const std::vector<std::uint8_t> message{0, 0, 0, 0, 4};
+  ASSERT_TRUE(encoder->needsContent());
+  EXPECT_EQ(vocabulary_.at(encoder->id(message.data(), message.size())).type,
+            "arm/MoveActionResult[status.status=4]");
+  connection.definition = "a/Goal[] status\n====\nMSG: a/Goal\nuint8 status\n";
+  EXPECT_FALSE(makeEncoder(rules).connect(connection)->needsContent()) << "one of many says less";
+  connection.definition = "a/Goal status\n";
+  EXPECT_FALSE(makeEncoder(rules).connect(connection)->needsContent()) << "it cannot be read";
+}
+
 TEST_F(EncoderTest, TheOnlyMessageOfRostopicIsAnEvent) {
   Connection connection = scan();
   connection.latching = true;

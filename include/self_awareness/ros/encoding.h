@@ -66,9 +66,10 @@ struct EncodingRules {
   std::vector<std::string> exclude_topics;
   std::vector<std::string> include_sources;  ///< empty: all; no effect for Source::kNone
   std::vector<std::string> exclude_sources;
-  std::map<std::string, std::string> type_fields;  ///< field by datatype
-  std::map<std::string, ValueClasses> classes;     ///< of some type fields, by datatype
-  std::optional<ModeField> mode;                   ///< none: nobody tells a mode
+  /// Field by the datatype of messages, or of one of their own fields.
+  std::map<std::string, std::string> type_fields;
+  std::map<std::string, ValueClasses> classes;  ///< of some type fields, by datatype
+  std::optional<ModeField> mode;                ///< none: nobody tells a mode
 
   /// Rules that suit most robots: everything but the monitor's own output, clocks, aggregated
   /// logs, bonds and tools that only look on.
@@ -139,6 +140,9 @@ class ConnectionEncoder {
   bool accept();
   /// Whether messages must be read; if not, all on this connection have one id.
   bool needsContent() const { return field_ != nullptr || tellsMode(); }
+  /// Id of the event that says that a message is held ready, in place of one that accept() does
+  /// not take (core/stream/latched.h); none: of lines for people, that says nothing.
+  std::optional<core::EventId> latched();
   /// Id of a message if needsContent() is false.
   core::EventId id();
   /// Id of a message by its serialized content.

@@ -48,6 +48,9 @@ class Judge : public core::Judge {
       scorer_.enter(event);  // one that training never saw is no stranger
       return std::nullopt;
     }
+    if (model_->vocabulary().isLatched(event.id) || (heard_ && heard_->isLatched(event.id))) {
+      return std::nullopt;
+    }
     const bool unknown = who_sends_.add(event, accepted_);
     const std::optional<std::int64_t> gap = scorer_.add(event);
     if (model_->knows(event.id)) {
@@ -235,7 +238,8 @@ void Judge::weigh(const Window& window, std::vector<double>& evidence) {
   accepted_.leaveOut(scorer_.heard(), evidence);
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     // Most tracks say nothing most of the time, and a division takes its time.
-    const bool counts = evidence[track] > 0 && !who_sends_.moved()[model_->tracks()[track].to];
+    const bool counts = evidence[track] > 0 &&
+                        !who_sends_.explains(model_->tracks()[track].to, model_->finding(track));
     const double share = counts ? evidence[track] / limits_->tracks[track] : 0;
     shares_[track] = std::isnan(share) ? 0 : share;
   }

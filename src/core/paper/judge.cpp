@@ -32,8 +32,10 @@ class Judge : public core::Judge {
 
   std::optional<ObservedEvent> add(const Event& event) override {
     if (model_->vocabulary().tellsMode(event.id) ||
-        (heard_types_ && heard_types_->tellsMode(event.id))) {
-      return std::nullopt;  // the paper knows no modes
+        (heard_types_ && heard_types_->tellsMode(event.id)) ||
+        model_->vocabulary().isLatched(event.id) ||
+        (heard_types_ && heard_types_->isLatched(event.id))) {
+      return std::nullopt;  // the paper knows no modes, and nothing without delays
     }
     const Scorer::Scored scored = scorer_.score(event);
     scores_.push_back(scored.score);

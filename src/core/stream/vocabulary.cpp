@@ -4,6 +4,7 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "self_awareness/core/stream/latched.h"
 #include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core {
@@ -32,6 +33,7 @@ EventId Vocabulary::intern(const EventType& type) {
   if (is_new) {
     types_.push_back(type);
     tells_mode_.push_back(core::tellsMode(type));
+    is_latched_.push_back(core::isLatched(type));
   }
   return entry->second;
 }

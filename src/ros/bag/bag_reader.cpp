@@ -179,6 +179,7 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
     links.push_back(watch ? watch->connect(connection, encoder) : nullptr);
   }
   std::vector<std::uint8_t> content;
+  std::vector<core::EventId> latched;  // what lasts when the range begins
   std::uint64_t done = 0;
   withMessages([&](BagMessages& messages) {
     for (const BagIndexEntry& entry : files_->index().entries) {
@@ -195,8 +196,14 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
         continue;
       }
       const bool accepted = connection_encoder->accept();
+      if (const auto id = accepted ? std::nullopt : connection_encoder->latched()) {
+        latched.push_back(*id);
+      }
       if (!stamps.holds(entry.stamp)) {
         continue;
+      }
+      for (const core::EventId id : std::exchange(latched, {})) {
+        handler({entry.stamp, id, {}});
       }
       const BagIndexEntry stored = asStored(entry, summary_.set_back);
       AttributeReader& reader = attributes[entry.connection];

@@ -19,6 +19,7 @@
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/EventLogStart.h"
 #include "self_awareness/core/evidence/tuning.h"
+#include "self_awareness/core/stream/latched.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/encoding_message.h"
 #include "self_awareness/ros/stable_name.h"
@@ -290,6 +291,7 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
   LogMessages messages(summary_.path, file_->content_->index);
   std::vector<std::optional<core::EventType>> types;  // by id in the log; none: left out
   std::vector<std::optional<core::EventId>> known;    // the same
+  std::vector<core::EventId> latched;                 // what lasts when the range begins
   std::uint64_t done = 0;
   for (std::size_t number = 0; number < parts_.size(); ++number) {
     if (progress) {
@@ -333,12 +335,20 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
       if (event.id >= known.size()) {
         messages.fail("an event of a type that it does not name");
       }
-      if (!stamps.holds(event.stamp) || !types[event.id]) {
+      const bool is_held = stamps.holds(event.stamp);
+      if (!types[event.id] || (!is_held && !core::isLatched(*types[event.id]))) {
         continue;
       }
       std::optional<core::EventId>& id = known[event.id];
       if (!id) {
         id = ids(*types[event.id]);
+      }
+      if (!is_held) {
+        latched.push_back(*id);
+        continue;
+      }
+      for (const core::EventId held : std::exchange(latched, {})) {
+        handler({event.stamp, held, {}});
       }
       handler({event.stamp, *id, event.attributes});
     }

@@ -54,12 +54,13 @@ void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput ow
   }
   senders_.restart();
   encodeAgain();
-  mode_again_ = true;
+  lasting_again_ = true;
 }
 
 void LiveEvents::setGraph(const Graph& graph) {
   if (own_output_.setGraph(graph) && encoder_) {
     encodeAgain();
+    lasting_again_ = true;
   }
 }
 
@@ -69,7 +70,7 @@ void LiveEvents::encodeAgain() {
     live.encoder = connect(connection);
     live.link = senders_.connect(connection, *encoder_);
     if (live.encoder) {
-      live.encoder->accept();  // the first message came before
+      live.latched = !live.encoder->accept();  // the first message came before
     } else {
       live.held.clear();
     }
@@ -90,9 +91,12 @@ std::size_t LiveEvents::connections() const {
                     [](const auto& connection) { return connection.second.encoder.has_value(); }));
 }
 
-void LiveEvents::tellModeAgain() {
+void LiveEvents::tellLastingAgain() {
   LiveConnection* last = nullptr;
   for (auto& [key, live] : connections_) {
+    if (live.latched && live.encoder) {
+      tellLatched(live, now(), steadyNow());
+    }
     const bool tells = live.mode && live.encoder && live.encoder->tellsMode();
     if (tells && (last == nullptr || live.mode_told > last->mode_told)) {
       last = &live;
@@ -100,6 +104,13 @@ void LiveEvents::tellModeAgain() {
   }
   if (last != nullptr) {
     tellMode(*last, now(), *last->mode, steadyNow());
+  }
+}
+
+void LiveEvents::tellLatched(LiveConnection& live, std::int64_t stamp, std::int64_t steady_time) {
+  if (const auto id = live.encoder->latched()) {
+    live.latched = true;
+    tell(live, {stamp, *id, {}}, steady_time);
   }
 }
 
@@ -113,8 +124,8 @@ std::int64_t LiveEvents::now() const {
 }
 
 void LiveEvents::deliver() {
-  if (std::exchange(mode_again_, false)) {
-    tellModeAgain();
+  if (std::exchange(lasting_again_, false)) {
+    tellLastingAgain();
   }
   const std::vector<Arrivals::Dropped> dropped = arrivals_.take(delivered_);
   for (const Arrival& arrival : delivered_) {
@@ -167,6 +178,9 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     event.attributes = {};  // the age is that by a clock which does not count
   }
   const bool accepted = encoder->accept();
+  if (!accepted) {
+    tellLatched(live, event.stamp, arrival.steady);
+  }
   if (!accepted && !encoder->tellsMode()) {
     return;
   }

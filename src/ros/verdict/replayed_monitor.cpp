@@ -36,7 +36,8 @@ void ReplayedMonitor::onEvent(const core::Event& event, bool same_clock) {
     heard_.onClockStep();
     announcer_.standDown(kClockWasSet, now_);
   }
-  if (!vocabulary_.tellsMode(event.id)) {  // else its message is another event
+  // Else its message is another event, or none.
+  if (!vocabulary_.tellsMode(event.id) && !vocabulary_.isLatched(event.id)) {
     heard_.add(event);
   }
 }

@@ -77,7 +77,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
     summary: Dict[str, Any] = {
         'tracks': dict(Counter(track.channel for track in tracks)),
         'not_judged': [str(kind) for index, kind in enumerate(model.event_types)
-                       if model.gaps(index) < model.fewest_gaps],
+                       if model.gaps(index) < model.fewest_gaps and not kind.is_latched],
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
         'without': model.tuning.without,
         'unheard': coverage_text.unheard(model.unheard),

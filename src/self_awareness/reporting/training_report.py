@@ -30,4 +30,4 @@ def print_summary(model: TrainedModel) -> None:
 def _too_rare(model: TrainedModel) -> List[Tuple[str, int]]:
     return [(str(event_type), model.gaps(index))
             for index, event_type in enumerate(model.event_types)
-            if model.gaps(index) < model.fewest_gaps]
+            if model.gaps(index) < model.fewest_gaps and not event_type.is_latched]

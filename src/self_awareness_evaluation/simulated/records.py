@@ -87,7 +87,8 @@ def fault_record(scenario: Scenario, seed: int, kind: str) -> FaultRecord:
 def encode(recorded: List[Event], scenario: Scenario, end: int) -> WindowedEvents:
     """Encode messages as the bag reader does; `end`: of the recording [ns], exclusive.
 
-    The first message of a latched topic is left out: it may be a repeated one.
+    The first message of a latched topic is left out: it may be a repeated one, and that it is
+    there is another question.
     """
     latched: Set[str] = {'/' + topic for spec in scenario.components
                          for topic, output in spec.outputs().items() if output.latch}

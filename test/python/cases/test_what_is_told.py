@@ -1,15 +1,8 @@
 """Whom an alarm names, when it ends, and the sentence for it, by the cases of ../shared/cases."""
 from __future__ import annotations
 
-import json
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
-from typing import Any, Dict
-
-from self_awareness.commands import calibrate, score, train
 
 
 def test_who_has_a_request_outstanding_is_no_suspect(cases, scored, tmp_path: Path) -> None:
@@ -42,32 +35,17 @@ def test_a_node_that_is_started_again_and_again_is_one_incident(cases, scored, c
     assert said[-1] == f"  {recording['incidents'][0]['headline']}"
 
 
-def of_its_own_robot(cases, number: int, recording: str, training: int, normal: int,
-                     tmp_path: Path) -> Dict[str, Any]:
-    """Return what is said of a recording of a case that has a robot of its own."""
-    case, = cases.folder.glob(f'{number}_*')
-    subprocess.run([sys.executable, '-B', str(case / 'make.py')], check=True,
-                   env={**os.environ, 'OUT': str(tmp_path)}, stdout=subprocess.DEVNULL)
-    bags = [str(tmp_path / f'n{place}.bag') for place in range(1, normal + 1)]
-    model, said = str(tmp_path / 'm'), tmp_path / 'said.json'
-    assert train.main([*bags[:training], '-o', model]) == 0
-    assert calibrate.main(['--model', model, '--normal', *bags[training:], '-o', model]) == 0
-    assert score.main([str(tmp_path / recording), '--model', model, '--json', str(said)]) == 0
-    found, = json.loads(said.read_text('utf-8'))['recordings']
-    return found
-
-
-def test_nodes_that_fall_silent_at_once_are_not_late(cases, tmp_path: Path) -> None:
+def test_nodes_that_fall_silent_at_once_are_not_late(of_its_own_robot) -> None:
     """One robot of two loses its link; the other one, and the station, go on."""
-    recording = of_its_own_robot(cases, 15, 'lost.bag', 4, 6, tmp_path)
+    recording = of_its_own_robot('15_one_robot_of_two_loses_its_link', 'lost.bag')
     assert re.fullmatch(r'7 nodes at once \((/r1/\w+, ){2}/r1/\w+ and others\) fell silent at '
                         r'60\.0 s, and came back at 80\.6 s\.',
                         recording['incidents'][0]['headline'])
     assert [alarm['busy'] for alarm in recording['alarms']] == [None] * len(recording['alarms'])
 
 
-def test_two_thirds_of_the_rate_are_found_in_clumps(cases, tmp_path: Path) -> None:
-    recording = of_its_own_robot(cases, 31, 'slow.bag', 8, 12, tmp_path)
+def test_two_thirds_of_the_rate_are_found_in_clumps(of_its_own_robot) -> None:
+    recording = of_its_own_robot('31_two_thirds_of_the_rate_over_a_weak_link', 'slow.bag', 8, 12)
     incident, = recording['incidents']
     assert (incident['cause'], incident['kind']) == ('/laser', 'slow')
     assert recording['alarms'][0]['begin_s'] < 20.0

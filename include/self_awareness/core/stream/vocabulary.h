@@ -38,12 +38,15 @@ class Vocabulary {
   bool tellsMode(EventId id) const {
     return id < tells_mode_.size() ? tells_mode_[id] : id == kOtherMode;
   }
+  /// Whether an id is that of a type that says that a message is held ready (latched.h).
+  bool isLatched(EventId id) const { return id < is_latched_.size() && is_latched_[id]; }
   std::size_t size() const { return types_.size(); }
   const std::vector<EventType>& types() const { return types_; }
 
  private:
   std::vector<EventType> types_;
   std::vector<bool> tells_mode_;  // by id: events ask all the time
+  std::vector<bool> is_latched_;  // the same
   std::map<EventType, EventId> ids_;
 };
 

@@ -73,7 +73,8 @@ class LiveEvents {
   Arrivals& arrivals() { return arrivals_; }
 
   /// Encodes from now on with this encoder. Connections that were heard are no new ones: the next
-  /// message on a latching one is an event. The mode that was told last is told again.
+  /// message on a latching one is an event. The mode that was told last, and what is latched, are
+  /// told again.
   /// @param own_output left out
   /// @param window length [ns]
   /// @param hold for so long what a publisher says that may be left out once the graph is known
@@ -108,6 +109,7 @@ class LiveEvents {
     std::vector<core::Event> held{};
     std::shared_ptr<const Content> mode{};  // the last message that told one; none: it did not
     std::int64_t mode_told = 0;             // then [ns of steady time]
+    bool latched = false;                   // what it holds ready was told
   };
 
   /// Chooses anew what is left out, of connections that were heard.
@@ -117,7 +119,9 @@ class LiveEvents {
   static bool isRead(const LiveConnection& live, const Arrival& arrival);
   /// Puts the bytes of a message into content_.
   void read(const Arrival& arrival);
-  void tellModeAgain();
+  /// To another encoder: the mode, and what is latched.
+  void tellLastingAgain();
+  void tellLatched(LiveConnection& live, std::int64_t stamp, std::int64_t steady_time);
   /// @throw std::out_of_range if the message is too short
   void tellMode(LiveConnection& live, std::int64_t stamp, const Content& content,
                 std::int64_t steady_time);
@@ -140,9 +144,9 @@ class LiveEvents {
   Arrivals arrivals_;
   std::shared_ptr<const Encoder> encoder_;
   OwnOutput own_output_;
-  std::int64_t hold_ = 0;    // [ns]
-  bool holds_ = false;       // some connections have something held
-  bool mode_again_ = false;  // the mode that was told last has to be told to another encoder
+  std::int64_t hold_ = 0;       // [ns]
+  bool holds_ = false;          // some connections have something held
+  bool lasting_again_ = false;  // the mode and what is latched, to another encoder
   // All messages of a connection share one header object.
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
   std::vector<Arrival> delivered_;  // kept for its memory

@@ -131,8 +131,8 @@ class PacesState : public ChannelState {
     OfType& pace = paces_[number];
     const std::int64_t gap = arrival.stamp - arrival.last_stamp;
     double step = expected_.step(number, gap);
-    // Who loses messages on the way is not slow: Lost tells it. While a simulation stands still, no
-    // time passes, and nothing has a pace.
+    // Who loses messages on the way is not slow: Lost tells it. While a simulation stands still,
+    // no time passes, and nothing has a pace.
     const bool counts = gap != 0 && !arrival.stalled && !arrival.attributes.isAfterLoss();
     if (pace.catchesUp(static_cast<double>(gap), step, expected_.meanGap(number)) || !counts) {
       step = 0;

@@ -44,9 +44,19 @@ void Trainer::startRecording(Start start) {
 void Trainer::onClockStep() {
   const std::int64_t robot_start = recording_.robot_start;
   std::string robot = recording_.robot;
+  std::vector<EventId> latched;  // nobody sends it again
+  for (EventId id = 0; id < recording_.firsts.size(); ++id) {
+    if (recording_.firsts[id] >= 0 && statistics_->vocabulary().isLatched(id)) {
+      latched.push_back(id);
+    }
+  }
   endRecording();
   recording_.robot_start = robot_start;
   recording_.robot = std::move(robot);
+  resizeRecording();
+  for (const EventId id : latched) {
+    recording_.firsts[id] = 0;
+  }
 }
 
 void Trainer::endRecording() {
@@ -120,6 +130,9 @@ void Trainer::add(const Event& event) {
     return;
   }
   countTicks(ran.stamp);
+  if (statistics_->vocabulary().isLatched(ran.id)) {
+    return;
+  }
   counts_.add(ran.id);
   countAttributes(ran, event.stamp >= *since_ + recording_.firsts[ran.id] + kAttributesFrom);
   count(ran);

@@ -91,6 +91,9 @@ std::optional<ObservedEvent> LimitFinder::observe(const Event& event) {
   if (event.id < firsts_.size() && firsts_[event.id] < 0) {
     firsts_[event.id] = std::max<std::int64_t>(event.stamp - *first_stamp_, 0);
   }
+  if (model_->vocabulary().isLatched(event.id)) {
+    return std::nullopt;
+  }
   if (event.id < settled_at_.size() && settled_at_[event.id] == kNever) {
     settled_at_[event.id] = event.stamp + parameters_.settle_time;
     settling_.push_back(event.id);

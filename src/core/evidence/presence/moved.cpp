@@ -14,6 +14,14 @@ constexpr std::int64_t kLongEnough = 4 * kNanosecondsPerSecond;
 constexpr double kFewestEvents = 4;
 constexpr double kOtherRate = 2;  // times as often, or as seldom, is another rate
 
+/// An event type without the value of its type field; none: it has no value.
+std::optional<EventType> withoutValue(const EventType& type) {
+  const std::size_t end = type.type.find('[');
+  return end == std::string::npos
+             ? std::nullopt
+             : std::optional(EventType{type.source, type.scope, type.type.substr(0, end)});
+}
+
 }  // namespace
 
 Moved::Moved(std::shared_ptr<const Model> model, std::shared_ptr<const Vocabulary> heard,
@@ -21,19 +29,27 @@ Moved::Moved(std::shared_ptr<const Model> model, std::shared_ptr<const Vocabular
     : model_(std::move(model)),
       heard_(std::move(heard)),
       expected_(std::move(expected)),
-      moved_(model_->size(), false) {
+      moved_(model_->size(), false),
+      has_other_value_(model_->size(), false) {
   for (EventId id = 0; id < model_->size(); ++id) {
     const EventType& type = model_->vocabulary().at(id);
-    if (!type.source.empty() && !model_->vocabulary().tellsMode(id)) {
+    if (!type.source.empty() && !model_->vocabulary().tellsMode(id) &&
+        !model_->vocabulary().isLatched(id)) {
       known_[{type.scope, type.type}].push_back(id);
       of_source_[type.source].push_back(id);
+      if (const std::optional<EventType> any = withoutValue(type)) {
+        valued_[*any].push_back(id);
+      }
     }
   }
 }
 
 void Moved::add(const Event& event) {
-  if (model_->knows(event.id) || !heard_ || event.id >= heard_->size() ||
-      known_.count({typeOf(event.id).scope, typeOf(event.id).type}) == 0) {
+  if (model_->knows(event.id) || !heard_ || event.id >= heard_->size()) {
+    return;
+  }
+  addValue(event);
+  if (known_.count({typeOf(event.id).scope, typeOf(event.id).type}) == 0) {
     return;
   }
   Sent& sent = sent_.try_emplace(event.id, Sent{event.stamp, 0, 0, false}).first->second;
@@ -41,13 +57,25 @@ void Moved::add(const Event& event) {
   ++sent.events;
 }
 
+void Moved::addValue(const Event& event) {
+  const std::optional<EventType> any = withoutValue(typeOf(event.id));
+  const auto valued = any ? valued_.find(*any) : valued_.end();
+  if (valued != valued_.end()) {
+    for (const EventId known : valued->second) {
+      other_values_[known] = event.stamp;
+    }
+  }
+}
+
 void Moved::restart() {
+  other_values_.clear();
   sent_.clear();
   places_.clear();
   others_.clear();
   pairs_.clear();
   takers_.clear();
   moved_.assign(moved_.size(), false);
+  has_other_value_.assign(moved_.size(), false);
 }
 
 std::optional<bool> Moved::fits(const Sent& sent, EventId known) const {
@@ -103,7 +131,7 @@ void Moved::findPlaces(const Heard& heard, bool for_everybody) {
 
 void Moved::closeWindow(const Heard& heard, Accepted& accepted) {
   now_ = heard.windowEnd();
-  if (sent_.empty()) {
+  if (sent_.empty() && other_values_.empty()) {
     return;
   }
   for (auto& [id, sent] : sent_) {
@@ -120,6 +148,10 @@ void Moved::closeWindow(const Heard& heard, Accepted& accepted) {
   for (const auto& [known, place] : places_) {
     takers_.insert(place.taker);
     moved_[known] = true;
+  }
+  for (const auto& [known, last] : other_values_) {
+    has_other_value_[known] = now_ - last <= model_->longestGap(known) + kRateSpan &&
+                              heard.lastSeen(known).value_or(last) <= last;
   }
 }
 

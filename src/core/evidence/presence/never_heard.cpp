@@ -14,6 +14,8 @@ namespace {
 
 // Who came less often in all of training may stay away from one recording.
 constexpr std::uint64_t kFewestGaps = 30;
+// Of what is held ready, there is one in each recording.
+constexpr std::size_t kFewestRecordings = 3;
 
 /// Seconds, rounded: microseconds after a start mean nothing.
 double toMilliseconds(double seconds) {
@@ -46,8 +48,11 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
   for (EventId id = 0; id < model.size(); ++id) {
     component_of_.push_back(model.componentIndex(id));
     Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0, 0};
-    bool always = !statistics.recordings().empty() && statistics.type(id).gaps >= kFewestGaps &&
-                  !model.vocabulary().tellsMode(id);
+    const bool latched = model.vocabulary().isLatched(id);
+    bool always = latched ? statistics.recordings().size() >= kFewestRecordings
+                          : !statistics.recordings().empty() &&
+                                statistics.type(id).gaps >= kFewestGaps &&
+                                !model.vocabulary().tellsMode(id);
     for (const Statistics::Recording& recording : statistics.recordings()) {
       const std::int64_t first = id < recording.firsts.size() ? recording.firsts[id] : -1;
       always = always && first >= 0;
@@ -59,9 +64,11 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
       expected.shortest = std::min(expected.shortest, limits.firsts[id]);
       expected.longest = std::max(expected.longest, limits.firsts[id]);
     }
-    if (always) {
+    // What is held ready later than a start takes, somebody asked for.
+    if (always && (!latched || expected.longest <= alarm_later_)) {
       expected.late = std::llround(due_times * static_cast<double>(expected.longest));
-      expected.silent = silent[id];
+      // Who holds something ready may have been started before all that is recorded.
+      expected.silent = latched ? alarm_later_ : silent[id];
       all_.push_back(expected);
     }
   }
@@ -70,7 +77,7 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
 
 void NeverHeard::add(const Event& event) {
   start_ = start_.value_or(event.stamp);
-  if (event.id < component_of_.size()) {
+  if (event.id < component_of_.size() && !vocabulary_.isLatched(event.id)) {
     heard_[component_of_[event.id]] = true;
   }
   for (std::vector<Expected>* list : {&waiting_, &missing_}) {
@@ -91,7 +98,14 @@ std::vector<bool> NeverHeard::expected() const {
 }
 
 void NeverHeard::restart() {
-  waiting_ = all_;
+  std::vector<Expected> again;
+  std::copy_if(all_.begin(), all_.end(), std::back_inserter(again), [this](const Expected& each) {
+    const auto isSame = [&](const Expected& other) { return other.id == each.id; };
+    return !vocabulary_.isLatched(each.id) ||  // else it is not sent again
+           std::any_of(waiting_.begin(), waiting_.end(), isSame) ||
+           std::any_of(missing_.begin(), missing_.end(), isSame);
+  });
+  waiting_ = std::move(again);
   missing_.clear();
   heard_.assign(heard_.size(), false);
   start_.reset();
@@ -116,8 +130,9 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
         std::max(alarm_times_ * static_cast<double>(expected.started(settle_time)),
                  static_cast<double>(expected.due(settle_time) + alarm_later_));
     expected.share = static_cast<double>(passed) / alarm;
-    // A recording may lack a topic. And what never comes must not hide what breaks next.
-    if (heard_[component_of_[expected.id]] ||
+    // A recording may lack a topic, or what is held ready: that is cut off with a bag's begin. And
+    // what never comes must not hide what breaks next.
+    if (heard_[component_of_[expected.id]] || vocabulary_.isLatched(expected.id) ||
         static_cast<double>(passed) > alarm + accept_after_) {
       expected.share = std::min(expected.share, 1.0);
     }

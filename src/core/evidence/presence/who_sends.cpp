@@ -44,7 +44,7 @@ void WhoSends::closeWindow(const Heard& heard, Accepted& accepted) {
 }
 
 std::vector<bool> WhoSends::needNotCome(std::vector<bool> may_be_silent) const {
-  std::transform(may_be_silent.begin(), may_be_silent.end(), moved().begin(),
+  std::transform(may_be_silent.begin(), may_be_silent.end(), moved_.moved().begin(),
                  may_be_silent.begin(), std::logical_or<>());
   return may_be_silent;
 }

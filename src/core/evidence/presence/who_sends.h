@@ -41,9 +41,12 @@ class WhoSends {
   /// Looks at them at the end of a window.
   void closeWindow(const Heard& heard, Accepted& accepted);
 
-  /// Event types of the model that come from another source now, by id.
-  const std::vector<bool>& moved() const { return moved_.moved(); }
-  /// The same, and those that may be silent.
+  /// Whether what an event type of the model is found to do is so since it comes from another
+  /// source, or does not come since it has another value.
+  bool explains(EventId id, Finding finding) const {
+    return moved_.moved()[id] || (isAbsence(finding) && moved_.hasOtherValue()[id]);
+  }
+  /// The event types that may be silent, and those that come from another source, by id.
   std::vector<bool> needNotCome(std::vector<bool> may_be_silent) const;
   /// Event types of the model whose components are there twice: what is unusual of theirs is that.
   std::vector<EventId> doubled() const;

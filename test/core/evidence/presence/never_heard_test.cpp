@@ -133,6 +133,44 @@ TEST_F(NeverHeardTest, ATopicOfANodeThatSaysOtherThingsIsASuspicionOnly) {
   EXPECT_EQ(shareAt(never_heard, 68 * kSecond), 1);
 }
 
+TEST_F(NeverHeardTest, WhatWasLatchedInThreeRecordingsIsExpectedAndRaisesNoAlarm) {
+  const auto withMap = [](unsigned seed, bool has_map) {
+    Events events = start(std::nullopt, seed);
+    if (has_map) {
+      events.insert(events.begin() + 3, {events[3].stamp, kC});
+    }
+    return events;
+  };
+  const auto learn = [&](bool has_third, const std::string& node = "/map_server") {
+    const std::vector<EventType> types{
+        {"/a", "/x", "T"}, {"/b", "/y", "T"}, {node, "/map", "T[latched]"}};
+    model_ = std::make_shared<Model>(watch(countsOf({withMap(1, true), withMap(3, true)}, types),
+                                           countsOf({withMap(7, has_third)}, types)));
+  };
+  learn(false);
+  NeverHeard not_expected = neverHeardBut({kA, kB});
+  EXPECT_EQ(shareAt(not_expected, 600 * kSecond), 0) << "one recording lacks it";
+  learn(true);
+  NeverHeard never_heard = neverHeardBut({kA, kB});
+  EXPECT_EQ(shareAt(never_heard, 59 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 61 * kSecond), 0);
+  EXPECT_EQ(named(never_heard), std::vector<EventId>{kC});
+  EXPECT_EQ(shareAt(never_heard, 600 * kSecond), 1) << "no alarm";
+  never_heard.restart();
+  never_heard.add({600 * kSecond, kA});
+  never_heard.add({600 * kSecond, kB});
+  EXPECT_GT(shareAt(never_heard, 662 * kSecond), 0) << "it is still not there";
+  never_heard.add({663 * kSecond, kC});
+  EXPECT_EQ(shareAt(never_heard, 664 * kSecond), 0);
+  never_heard.restart();  // the clock was set, and nobody sends it again
+  never_heard.add({700 * kSecond, kA});
+  never_heard.add({700 * kSecond, kB});
+  EXPECT_EQ(shareAt(never_heard, 900 * kSecond), 0);
+  learn(true, "/b");
+  NeverHeard b_holds_it_ready = neverHeardBut({kA, kC});
+  EXPECT_GT(shareAt(b_holds_it_ready, 66 * kSecond), 1) << "but sends nothing else";
+}
+
 TEST_F(NeverHeardTest, ALongSettlingTimeIsWaitedFor) {
   NeverHeard never_heard = neverHeardBut({kA});
   never_heard.closeWindow(30 * kSecond, 30 * kSecond);
