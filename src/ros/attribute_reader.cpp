@@ -11,9 +11,8 @@ namespace {
 
 /// Where the header of messages begins [bytes]: at once, or, as transforms have one each and their
 /// message has none, behind the length of the array that messages begin with. None: nowhere.
-/// @param behind_length [bytes]
 std::optional<std::size_t> placeOfHeader(const std::string& definition,
-                                         const std::string& datatype, std::size_t behind_length) {
+                                         const std::string& datatype) {
   const MessageDefinition::Lines header{
       {"uint32", "", "seq"}, {"time", "", "stamp"}, {"string", "", "frame_id"}};
   try {
@@ -25,7 +24,7 @@ std::optional<std::size_t> placeOfHeader(const std::string& definition,
     const std::string element = beginsWith(datatype, "[]");
     const std::string first = beginsWith(element.empty() ? datatype : element, "");
     if (first == "std_msgs/Header" && types.linesOf(first) == header) {
-      return element.empty() ? 0 : behind_length;
+      return element.empty() ? 0 : AttributeReader::kLengthOfArray;
     }
   } catch (const std::invalid_argument&) {
     // Too long, or without the definition of a type that it begins with.
@@ -36,7 +35,7 @@ std::optional<std::size_t> placeOfHeader(const std::string& definition,
 }  // namespace
 
 AttributeReader::AttributeReader(const Connection& connection)
-    : place_(placeOfHeader(connection.definition, connection.datatype, kLengthOfArray)),
+    : place_(placeOfHeader(connection.definition, connection.datatype)),
       header_end_(place_ ? *place_ + kHeader : 0),
       is_read_(connection.datatype != "rosgraph_msgs/Log"),
       is_numbered_(!connection.latching) {}

@@ -20,6 +20,8 @@ class AttributeReader {
   /// most, spread over the message behind its header.
   static constexpr std::uint64_t kBlocks = 8;
   static constexpr std::uint64_t kBlock = 512;  ///< [bytes]
+  /// What an array of any length begins with [bytes].
+  static constexpr std::size_t kLengthOfArray = 4;
 
   /// @param connection messages whose definition does not begin with a std_msgs/Header, or with an
   /// array of something that does (tf2_msgs/TFMessage), are without one. In an array, that of the
@@ -58,7 +60,6 @@ class AttributeReader {
  private:
   static constexpr std::size_t kHeader =
       16;  // header.seq, header.stamp and the length of frame_id
-  static constexpr std::size_t kLengthOfArray = 4;  // [bytes]
 
   /// Calls the function with each part of the message that is compared with that of the one
   /// before.

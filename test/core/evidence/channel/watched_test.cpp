@@ -51,6 +51,7 @@ TEST(EvidenceTracks, FewGapsAreNotJudged) {
   EXPECT_TRUE(few.empty());
   const std::vector<Track> enough = chosen(gapsOf(kA, needed - 10), gapsOf(kA, 10));
   EXPECT_TRUE(isWatched(enough, kOverdue, kA, kA));
+  EXPECT_EQ(enough.size(), 3U) << "its silence, and both other paces, which need more";
 }
 
 TEST(EvidenceTracks, FewDelaysAreNoPair) {
