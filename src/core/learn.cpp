@@ -214,7 +214,7 @@ void Learner::startRecording(const Recording& recording, std::uint64_t fingerpri
 }
 
 void Learner::countEvent(const Event& event) {
-  if (vocabulary().tellsMode(event.id) || vocabulary().isLatched(event.id)) {
+  if (!vocabulary().isMessage(event.id)) {
     // The paper knows no modes, and nothing without delays.
   } else if (parameters_.counting.paper) {
     trainers_->paper.add(event);

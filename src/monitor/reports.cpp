@@ -53,8 +53,7 @@ void Reports::onCut(Cut why) {
 }
 
 void Reports::onEvent(const core::Event& event, const core::Vocabulary& vocabulary) {
-  // Else its message is another event, or none.
-  if (!vocabulary.tellsMode(event.id) && !vocabulary.isLatched(event.id)) {
+  if (vocabulary.isMessage(event.id)) {
     heard_.add(event);
   }
 }

@@ -31,10 +31,8 @@ class Judge : public core::Judge {
   }
 
   std::optional<ObservedEvent> add(const Event& event) override {
-    if (model_->vocabulary().tellsMode(event.id) ||
-        (heard_types_ && heard_types_->tellsMode(event.id)) ||
-        model_->vocabulary().isLatched(event.id) ||
-        (heard_types_ && heard_types_->isLatched(event.id))) {
+    if (!model_->vocabulary().isMessage(event.id) ||
+        (heard_types_ && !heard_types_->isMessage(event.id))) {
       return std::nullopt;  // the paper knows no modes, and nothing without delays
     }
     const Scorer::Scored scored = scorer_.score(event);

@@ -36,8 +36,7 @@ void ReplayedMonitor::onEvent(const core::Event& event, bool same_clock) {
     heard_.onClockStep();
     announcer_.standDown(kClockWasSet, now_);
   }
-  // Else its message is another event, or none.
-  if (!vocabulary_.tellsMode(event.id) && !vocabulary_.isLatched(event.id)) {
+  if (vocabulary_.isMessage(event.id)) {
     heard_.add(event);
   }
 }

@@ -40,6 +40,8 @@ class Vocabulary {
   }
   /// Whether an id is that of a type that says that a message is held ready (latched.h).
   bool isLatched(EventId id) const { return id < is_latched_.size() && is_latched_[id]; }
+  /// Whether its events are messages of their own: neither of both.
+  bool isMessage(EventId id) const { return !tellsMode(id) && !isLatched(id); }
   std::size_t size() const { return types_.size(); }
   const std::vector<EventType>& types() const { return types_; }
 
