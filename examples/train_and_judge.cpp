@@ -1,4 +1,4 @@
-// Events in, who is to blame out, without ROS and without Python: docs/embedding.md explains it.
+// Events in, who is to blame out, without ROS and without Python: docs/library.md explains it.
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Writes pages in HTML about the headers that docs/embedding.md names: start at index.html. Installs
+# Writes pages in HTML about the headers that docs/library.md names: start at index.html. Installs
 # doxygen if it is missing.
 #
 # usage: scripts/api_docs.sh FOLDER
@@ -16,7 +16,7 @@ case ${1:-} in
     ;;
 esac
 
-headers=$(grep --only-matching '`core/[a-z_/]*\.h`' "$checkout/docs/embedding.md" | tr -d '`' |
+headers=$(grep --only-matching '`core/[a-z_/]*\.h`' "$checkout/docs/library.md" | tr -d '`' |
   sort -u | sed 's,^,include/self_awareness/,')
 if [ "$1" = --headers ]; then
   echo "$headers"
@@ -31,8 +31,8 @@ cd "$checkout"
 doxygen - << SETTINGS
 PROJECT_NAME           = self_awareness
 PROJECT_BRIEF          = "The core as a C++ library"
-INPUT                  = docs/embedding.md ${headers//$'\n'/ }
-USE_MDFILE_AS_MAINPAGE = docs/embedding.md
+INPUT                  = docs/library.md ${headers//$'\n'/ }
+USE_MDFILE_AS_MAINPAGE = docs/library.md
 STRIP_FROM_INC_PATH    = include
 STRIP_FROM_PATH        = include
 FILTER_PATTERNS        = "*.md=sed -E 's/\[([^]]*)\]\([^)]*\)/\1/g'"

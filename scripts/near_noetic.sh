@@ -5,7 +5,7 @@
 #
 # usage: scripts/near_noetic.sh COMMAND...
 #
-# docs/reliability.md lists the versions, and what is newer or older than in Noetic all the same.
+# docs/developers.md lists the versions, and what is newer or older than in Noetic all the same.
 
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The recovery beside the simulated robot at 10 times its speed: is a laser driver that hangs back
 # within 5 s of the alarm, besides the delay, every time? Is a healthy node ever restarted? Writes a
-# section of docs/reliability.md, and fails if not so.
+# section of docs/reliability/README.md, and fails if not so.
 #
 # usage: scripts/recovery.sh [TIMES [MINUTES [OPTION...]]]     20 times, and 60 minutes of random
 #                                                              faults by default

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The monitor beside the simulated robot at 10 times its speed, with random faults: does it miss one,
-# does it cry wolf, does its memory grow? Writes a section of docs/reliability.md, and fails if so.
+# does it cry wolf, does its memory grow? Writes a section of docs/reliability/README.md, and fails
+# if so.
 #
 # usage: scripts/soak.sh [MINUTES] [OPTION...]     60 minutes by default, and a quarter of an hour to
 #                                                  learn before

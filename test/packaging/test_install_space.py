@@ -11,7 +11,7 @@ from typing import Dict, Iterator
 
 import pytest
 
-from conftest import ALARM, ROOT, run, run_project_of_embedding_page
+from conftest import ALARM, ROOT, run, run_project_of_library_page
 
 DEADLINE_S = 120.0
 """For a node to speak, or to end, on a busy machine too."""
@@ -141,8 +141,8 @@ def master(installed: Dict[str, str]) -> Iterator[None]:
 
 
 def test_a_catkin_package_links_the_library(installed: Dict[str, str], tmp_path: Path) -> None:
-    printed = run_project_of_embedding_page(tmp_path, 'find_package(catkin',
-                                            '-DPYTHON_EXECUTABLE=/usr/bin/python3', env=installed)
+    printed = run_project_of_library_page(tmp_path, 'find_package(catkin',
+                                          '-DPYTHON_EXECUTABLE=/usr/bin/python3', env=installed)
     assert ALARM.fullmatch(printed), printed
 
 

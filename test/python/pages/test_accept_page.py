@@ -1,4 +1,4 @@
-"""docs/accept.md: its calls are typed as they are written, while a node of the robot is dead."""
+"""docs/live.md: the calls of its table are typed as written, while a node of the robot is dead."""
 from __future__ import annotations
 
 import random
@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Tuple
 
 import yaml
 from conftest import wait_until, write_bag
-from page_reader import BACKGROUND, Reader, blocks
+from page_reader import BACKGROUND, DOCS, Reader
 
 ID = re.compile(r'\b\d{19}\b')
 NODES = (('/camera', '/image', 12.5), ('/base', '/odom', 10.0))
@@ -28,6 +28,14 @@ def learned(reader: Reader) -> None:
     reader.type('rosrun self_awareness train 0.bag 1.bag -o robot.model')
 
 
+def calls(service: str) -> List[str]:
+    """Return the lines of the page's table that call a service of the monitor."""
+    lines = re.findall(r'^\| .* \| `(ros.*)` \|$', (DOCS / 'live.md').read_text(encoding='utf-8'),
+                       re.MULTILINE)
+    return [line for line in lines
+            if line.startswith(f'rosservice call /self_awareness/{service}')]
+
+
 def answer(reader: Reader, call: str) -> Tuple[bool, str]:
     """Return what a call says; too many in a row are refused for some seconds."""
     said: List[Dict[str, Any]] = []
@@ -40,7 +48,7 @@ def answer(reader: Reader, call: str) -> Tuple[bool, str]:
     return said[-1]['success'], said[-1]['message']
 
 
-def test_what_is_normal_is_accepted_and_taken_back_as_the_page_says(reader: Reader) -> None:
+def test_all_that_somebody_wants_is_done_as_the_page_says(reader: Reader) -> None:
     learned(reader)
     reader.type(f'{BACKGROUND}\nroslaunch self_awareness monitor.launch model:=robot.model')
     for name, topic, rate in reversed(NODES):
@@ -50,18 +58,28 @@ def test_what_is_normal_is_accepted_and_taken_back_as_the_page_says(reader: Read
                 '/self_awareness/status')
     reader.kill_last()
     alarm = re.search(r'^alarm: (\d+)$', reader.type(
-        'rostopic echo -n 1 --filter "m.level == 2" /self_awareness/alarm'), re.MULTILINE)
+        """rostopic echo -n 1 --filter 'm.level == 2 and m.component == "/camera"' """
+        '/self_awareness/alarm'), re.MULTILINE)
     assert alarm is not None
-    first, second = blocks('accept.md')
-    ask, *accept = [ID.sub(alarm[1], call) for call in first.splitlines()]
+    ask, *accept, ask_back, undo = [ID.sub(alarm[1], call) for call in calls('accept')]
+    assert len(accept) == 5
     done, message = answer(reader, ask)
     assert not done and f'"{{alarm: {alarm[1]}}}" for /camera on /image (silent)' in message
     for call in accept:
         done, message = answer(reader, call)
         assert done and 'normal from now on' in message, call
-    ask, *undo = second.splitlines()
-    done, message = answer(reader, ask)
-    assert not done and '/rostopic_12 on /cmd_vel, /camera (slow)' in message
-    for call in undo:
+    done, message = answer(reader, ask_back)
+    assert not done and '/rostopic_12 on /cmd_vel, /camera (slow), /joystick' in message
+    done, message = answer(reader, undo)
+    assert done and 'judged again' in message
+    *mutes, told_again = calls('mute')
+    assert len(mutes) == 4
+    for call in mutes:
         done, message = answer(reader, call)
-        assert done and 'judged again' in message, call
+        assert done and 'not told until' in message, call
+    done, message = answer(reader, told_again)
+    assert done and 'told again: /camera' in message
+    for service, said in (('clear', 'alarm'), ('dump', 'dump_')):
+        call, = calls(service)
+        done, message = answer(reader, call)
+        assert done and said in message, message

@@ -29,7 +29,7 @@ def write_hour(path: Path, start: int) -> None:
 
 def test_two_hours_are_learned_and_learned_again_by_the_commands_that_are_printed(
         reader: Reader) -> None:
-    launch, reload = blocks('learn.md')
+    launch, reload, *_ = blocks('learn.md')
     model = reader.folder / 'robot.model'
     logs = reader.folder / 'robot.model.logs'
     logs.mkdir()
@@ -47,3 +47,33 @@ def test_two_hours_are_learned_and_learned_again_by_the_commands_that_are_printe
     assert TrainedModel.load(str(model)).calibration.budget == 0.1
     reader.type('until rosservice type /self_awareness/reload; do sleep 0.1; done')
     assert 'success: True' in reader.type(reload)
+
+
+def test_step_by_step_and_months_later(reader: Reader) -> None:
+    """All other commands, on days of the simulated robot."""
+    _, _, record, train, inject, paper, monitor, later, changed = blocks('learn.md')
+    reader.type('rosrun self_awareness simulate -o days --runs 6 --duration 150')
+    days = sorted((reader.folder / 'days').glob('*.bag'))
+    for name, day in zip(('monday', 'tuesday', 'wednesday', 'today'), days):
+        for file in day.parent.glob(f'{day.stem}.*'):
+            file.rename(reader.folder / file.name.replace(day.stem, name))
+    (reader.folder / 'days').rename(reader.folder / 'robot.model.kept')
+
+    reader.type(record)
+    reader.type(train)
+    model = str(reader.folder / 'robot.model')
+    assert TrainedModel.load(model).calibration is not None
+    assert re.search(r'^faults: found \d+ of 18,', reader.type(inject), re.MULTILINE)
+    reader.type(paper)
+    assert TrainedModel.load(str(reader.folder / 'both.model')).paper_calibration is not None
+
+    reader.type(monitor)
+    reader.type('until rosservice type /self_awareness/reload; do sleep 0.1; done')
+    said = reader.type(later)
+    for text in ('nothing drifts', 'taken: robot.model', 'success: True'):
+        assert text in said
+    assert len(TrainedModel.load(model).recordings) == 4
+    said = reader.type(changed)
+    assert 'before  robot.model.before' in said and 'after   today.bag' in said
+    assert 'today.bag' in (reader.folder / 'today.html').read_text()
+    wait_until(lambda: list(reader.folder.glob('normal_*.bag*')), 'what the recorder writes')
