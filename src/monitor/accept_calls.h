@@ -23,7 +23,7 @@
 namespace self_awareness {
 
 /// The service ~accept: what an operator takes as normal from now on. It is kept in a file beside
-/// the model, for other starts, and for `train` and `calibrate` (docs/accept.md).
+/// the model, for other starts, and for `train` and `calibrate` (docs/live.md).
 ///
 /// Belongs to the thread that judges; a thread of its own waits for the disk.
 class AcceptCalls {

@@ -26,7 +26,7 @@ struct KeptLogsParameters {
   int disk = 500;   ///< ~learn_more_disk: most of all logs [MB]
 };
 
-/// Keeps event logs of normal operation, to learn more from (docs/learn_more.md). What is heard is
+/// Keeps event logs of normal operation, to learn more from (docs/learn.md). What is heard is
 /// cut into stretches, each of which stays in memory until it is over: only what was normal all
 /// the time is written. The oldest logs make room for new ones.
 ///

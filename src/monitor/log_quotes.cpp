@@ -1,5 +1,10 @@
 #include "log_quotes.h"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <ros/exception.h>
+#include <ros/serialization.h>
+
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -10,6 +15,7 @@ namespace self_awareness {
 namespace {
 
 const std::string kLog = "rosgraph_msgs/Log[";
+const std::string kDiagnostics = "diagnostic_msgs/DiagnosticArray[lists status.level";
 
 std::string nameOf(std::uint8_t level) {
   switch (level) {
@@ -28,16 +34,43 @@ std::string nameOf(std::uint8_t level) {
   }
 }
 
+std::string quoted(const std::string& text) {
+  return "\"" + ros1::printable(text, LogQuotes::kLongest) +
+         (text.size() > LogQuotes::kLongest ? "...\"" : "\"");
+}
+
+/// What the worst status of a message says; empty: the message cannot be read, or has none.
+std::string worstOf(const ros1::Content& content) {
+  diagnostic_msgs::DiagnosticArray message;
+  try {
+    std::vector<std::uint8_t> bytes(content.begin(), content.end());  // the stream is not const
+    ros::serialization::IStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+    ros::serialization::deserialize(stream, message);
+  } catch (const ros::Exception&) {
+    return "";
+  }
+  const auto worst =
+      std::max_element(message.status.begin(), message.status.end(),
+                       [](const auto& one, const auto& other) { return one.level < other.level; });
+  return worst == message.status.end() ? "" : worst->name + ": " + worst->message;
+}
+
 }  // namespace
 
 void LogQuotes::add(core::EventId id, const core::EventType& type, const ros1::Content& content) {
-  if (type.type.compare(0, kLog.size(), kLog) != 0) {
+  if (type.type.compare(0, kDiagnostics.size(), kDiagnostics) == 0) {
+    if (const std::string worst = worstOf(content); !worst.empty()) {
+      words_[id] = type.source + " says on " + type.scope + " " + quoted(worst) +
+                   ", and nothing so bad in training";
+    }
     return;
   }
-  const std::optional<ros1::SaidLine> line = ros1::readLogLine(content.data(), content.size());
+  const std::optional<ros1::SaidLine> line =
+      type.type.compare(0, kLog.size(), kLog) == 0
+          ? ros1::readLogLine(content.data(), content.size())
+          : std::nullopt;
   if (line) {
-    words_[id] = "logged " + nameOf(line->level) + " \"" + ros1::printable(line->text, kLongest) +
-                 (line->text.size() > kLongest ? "...\"" : "\"") +
+    words_[id] = type.source + " logged " + nameOf(line->level) + " " + quoted(line->text) +
                  ", and nothing of that level in training";
   }
 }

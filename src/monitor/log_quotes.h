@@ -12,8 +12,8 @@
 
 namespace self_awareness {
 
-/// Remembers the last line on /rosout of each event type that training never saw, so that a node
-/// that logs an error for the first time is named with what it said.
+/// Remembers what nodes last said of each event type that training never saw, on /rosout or on
+/// /diagnostics, so that one that says an error for the first time is named with its words.
 class LogQuotes : public Part {
  public:
   /// Longest quote [bytes].

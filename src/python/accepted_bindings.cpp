@@ -59,7 +59,7 @@ core::Acceptances acceptancesOf(const std::vector<Acceptance>& list) {
 
 void bindAccepted(py::module& m) {
   py::class_<Acceptance>(m, "Acceptance",
-                         "What somebody takes as normal from now on (docs/accept.md).")
+                         "What somebody takes as normal from now on (docs/live.md).")
       .def(py::init(&acceptanceOf), py::arg("component") = "", py::arg("topic") = "",
            py::arg("kind") = "", py::arg("at") = 0, py::arg("by") = "",
            py::arg("together") = std::vector<std::string>(),

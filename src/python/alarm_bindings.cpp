@@ -104,7 +104,8 @@ void bindAlarms(py::module& m) {
                              "who fell silent together, of what stood longest; None: nobody")
       .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first")
       .def_readonly("later", &Alarm::later,
-                    "of components that it named later, each with its time (since)");
+                    "of components that it named later, each with its time (since)")
+      .def("__str__", [](const Alarm& self) { return core::sentence(self); });
   m.def("sentence", &sentenceOf, py::arg("kind"), py::arg("components"), py::arg("topic"),
         py::arg("wrong"), py::arg("reason"), py::arg("is_silence"), py::arg("begin"),
         py::arg("end"), py::arg("goes_on"), py::arg("back"), py::arg("times"), py::arg("hosts"),

@@ -25,7 +25,7 @@ void bindDrift(py::module& m) {
                     "number of the sample, from 1, that told it first; 0: none did");
   py::class_<Drift>(m, "Drift",
                     "Tells that what is heard drifts towards the limits: a test whose false\n"
-                    "alarms over a lifetime are bounded (docs/learn_more.md).")
+                    "alarms over a lifetime are bounded (docs/learn.md).")
       .def("component", &Drift::component, py::arg("number"))
       .def_property_readonly("samples", &Drift::samples, "number of samples so far")
       .def_property_readonly("needed", &Drift::needed, "evidence from which on it is told");

@@ -17,6 +17,7 @@
 #include "ros/text.h"
 #include "self_awareness/Encoding.h"
 #include "self_awareness/core/stream/latched.h"
+#include "self_awareness/core/stream/listed.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/encoding_message.h"
@@ -117,8 +118,11 @@ void bindEncoding(py::module& m) {
           "tells_mode", [](const core::EventType& self) { return core::tellsMode(self); },
           "whether it tells the mode of the robot, and is no message of its own")
       .def_property_readonly(
-          "is_latched", [](const core::EventType& self) { return core::isLatched(self); },
-          "whether it only says that a message is held ready")
+          "is_message",
+          [](const core::EventType& self) {
+            return !core::tellsMode(self) && !core::isLatched(self) && !core::tellsList(self);
+          },
+          "whether its events are messages, not what is told besides")
       .def("__str__", py::overload_cast<const core::EventType&>(&core::toString))
       .def("__repr__",
            [](const core::EventType& self) { return "<EventType " + core::toString(self) + ">"; })

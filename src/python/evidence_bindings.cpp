@@ -43,7 +43,7 @@ class EvidenceRows : public core::WindowObserver {
       scorer_.enter(event);
       return std::nullopt;
     }
-    if (model_.vocabulary().isLatched(event.id)) {
+    if (!model_.vocabulary().isMessage(event.id)) {
       return std::nullopt;
     }
     return core::ObservedEvent{event, !model_.knows(event.id), scorer_.add(event)};

@@ -375,7 +375,7 @@ void bindRecordings(py::module& m) {
       "Where the clock was set forward: stamps of the first event after each step [ns].");
   m.def("pack_attributes", &packAttributes, py::arg("ages"), py::arg("sizes"), py::arg("steps"),
         py::arg("same"),
-        "The attributes of messages, each as one number, uint32 (docs/attributes.md).\n"
+        "The attributes of messages, each as one number, uint32 (docs/method.md, section 3.10).\n"
         "ages: since their stamps [s], NaN: there is no header, inf: the stamp is 0; sizes: "
         "[bytes];\n"
         "steps: of their numbers (header.seq) since the message before, -1: not known; same: the\n"

@@ -11,10 +11,12 @@
 #include <tuple>
 #include <utility>
 
+#include "listed_field.h"
 #include "message_definition.h"
 #include "name_patterns.h"
 #include "name_renames.h"
 #include "self_awareness/core/stream/latched.h"
+#include "self_awareness/core/stream/listed.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/siblings.h"
 #include "self_awareness/ros/stable_name.h"
@@ -42,41 +44,6 @@ bool isLegalTopic(const std::string& name) {
          name[0] != '~';
 }
 
-/// @throw std::invalid_argument if the classes of a datatype cannot be
-void checkClasses(const EncodingRules& rules, const std::string& datatype,
-                  const ValueClasses& classes) {
-  const std::string begin =
-      "encoding: the classes of " + printable(datatype, kLongestQuote) + " must be ";
-  if (rules.type_fields.count(datatype) == 0) {
-    throw std::invalid_argument(begin + "those of one of its fields (type_fields)");
-  }
-  if (classes.number < ValueClasses::kFewest || classes.number > ValueClasses::kMost) {
-    throw std::invalid_argument(begin + std::to_string(ValueClasses::kFewest) + " to " +
-                                std::to_string(ValueClasses::kMost) + ", not " +
-                                std::to_string(classes.number));
-  }
-  const std::vector<double>& bounds = classes.bounds;
-  if (bounds.size() >= classes.number ||
-      !std::all_of(bounds.begin(), bounds.end(),
-                   [](double bound) { return std::isfinite(bound); }) ||
-      std::adjacent_find(bounds.begin(), bounds.end(), std::greater_equal<>()) != bounds.end()) {
-    throw std::invalid_argument(begin +
-                                "separated by finite, ascending bounds, fewer than classes");
-  }
-}
-
-/// With as few digits as tell it from all other numbers.
-std::string inShort(double value) {
-  char text[32];
-  for (int digits = 1; digits <= 17; ++digits) {
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
-    if (std::strtod(text, nullptr) == value) {
-      break;
-    }
-  }
-  return text;
-}
-
 /// The field by which the messages of a connection say what they do: that of their type, or that
 /// of a type which one of their own fields has, as the results of actions have a status of their
 /// goal. Empty: none does.
@@ -92,7 +59,9 @@ std::string typeFieldOf(const EncodingRules& rules, const Connection& connection
       const bool has_classes = rules.classes.count(line.type) > 0;  // of messages of that type
       if (field != rules.type_fields.end() && line.array.empty() && !has_classes) {
         const std::string path = line.name + "." + field->second;
-        definition.field(path);
+        if (!definition.listField(path)) {
+          definition.field(path);
+        }
         return path;
       }
     }
@@ -102,132 +71,22 @@ std::string typeFieldOf(const EncodingRules& rules, const Connection& connection
   return "";
 }
 
-/// @throw std::invalid_argument if the mode that is there cannot be told
-void checkMode(const EncodingRules& rules) {
-  const ModeField& mode = *rules.mode;
-  const std::string begin =
-      "encoding: the mode is told on '" + printable(mode.topic, kLongestQuote) + "'";
-  if (!isPrintable(mode.topic) || !isLegalTopic(mode.topic) || mode.topic[0] != '/') {
-    throw std::invalid_argument(begin +
-                                ", which is not the name of a topic; it begins with a slash");
-  }
-  if (!isPrintable(mode.field) || mode.field.empty()) {
-    throw std::invalid_argument(begin + ", but no field is named; name one of its messages");
-  }
-  const NamePatterns include(rules.include_topics);
-  if ((!include.empty() && !include.match(mode.topic)) ||
-      NamePatterns(rules.exclude_topics).match(mode.topic)) {
-    throw std::invalid_argument(begin +
-                                ", which include_topics or exclude_topics leave out; let it in");
+/// The field of the elements of an array that messages of a connection list; none: it lies in
+/// none, or the definition is not there at all.
+/// @throw std::invalid_argument if there is no such field
+std::optional<MessageDefinition::ListField> listFieldOf(const Connection& connection,
+                                                        const std::string& path) {
+  try {
+    const MessageDefinition definition(connection.definition, connection.datatype);
+    return definition.linesOf(connection.datatype).empty() ? std::nullopt
+                                                           : definition.listField(path);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("type field " + connection.datatype + ": " + path + ": " +
+                                error.what());
   }
 }
 
 }  // namespace
-
-EncodingRules EncodingRules::defaults() {
-  EncodingRules rules;
-  rules.exclude_topics = {"/clock",
-                          "/rosout_agg",
-                          "/statistics",
-                          "/diagnostics_agg",
-                          "/diagnostics_toplevel_state",
-                          ".*/bond",
-                          ".*/self_awareness/(status|alarm)"};
-  rules.exclude_sources = {".*/self_awareness(_manager)?", "(.*/)?(play|record|recorder|rosbag.*)",
-                           "(.*/)?(rqt|rviz|rosnode|rosservice|plotjuggler|foxglove).*"};
-  rules.type_fields = {{"actionlib_msgs/GoalStatus", "status"},
-                       {"rosgraph_msgs/Log", "level"},
-                       {"visualization_msgs/Marker", "action"}};
-  return rules;
-}
-
-void EncodingRules::validate() const {
-  NameRenames{renames};
-  for (const auto* patterns :
-       {&include_topics, &exclude_topics, &include_sources, &exclude_sources}) {
-    NamePatterns{*patterns};
-  }
-  for (const auto& [datatype, field] : type_fields) {
-    if (!isPrintable(datatype) || !isPrintable(field)) {
-      throw std::invalid_argument("encoding: the type field '" +
-                                  printable(datatype + ": " + field, kLongestQuote) +
-                                  "' is no UTF-8, or has control characters");
-    }
-  }
-  for (const auto& [datatype, its] : classes) {
-    checkClasses(*this, datatype, its);
-  }
-  if (mode) {
-    checkMode(*this);
-  }
-}
-
-bool operator==(const ValueClasses& a, const ValueClasses& b) {
-  return a.number == b.number && a.bounds == b.bounds;
-}
-
-std::vector<std::string> namesOfClasses(const std::vector<double>& bounds) {
-  std::vector<std::string> names{"below " + inShort(bounds.front())};
-  for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
-    names.push_back(inShort(bounds[k]) + " to " + inShort(bounds[k + 1]));
-  }
-  names.push_back(inShort(bounds.back()) + " or more");
-  names.emplace_back("NaN");
-  return names;
-}
-
-std::size_t classOf(double value, const std::vector<double>& bounds) {
-  const auto next = std::upper_bound(bounds.begin(), bounds.end(), value);
-  return std::isnan(value) ? bounds.size() + 1 : static_cast<std::size_t>(next - bounds.begin());
-}
-
-bool operator==(const Rename& a, const Rename& b) {
-  return a.pattern == b.pattern && a.name == b.name;
-}
-
-bool operator==(const ModeField& a, const ModeField& b) {
-  return a.topic == b.topic && a.field == b.field;
-}
-
-bool operator==(const EncodingRules& a, const EncodingRules& b) {
-  const auto fields = [](const EncodingRules& rules) {
-    return std::tie(rules.source, rules.renames, rules.include_topics, rules.exclude_topics,
-                    rules.include_sources, rules.exclude_sources, rules.type_fields, rules.classes,
-                    rules.mode);
-  };
-  return fields(a) == fields(b);
-}
-
-void checkEventTypes(const EncodingRules& rules, const core::Vocabulary& vocabulary) {
-  std::map<std::string, std::size_t> types;  // by datatype
-  std::size_t modes = 0;
-  for (const core::EventType& type : vocabulary.types()) {
-    if (core::tellsMode(type) && ++modes > kMostTypesOfField) {
-      throw std::invalid_argument(
-          "the field of the mode (" +
-          (rules.mode ? rules.mode->topic + ": " + rules.mode->field : std::string("not known")) +
-          ") has more than " + std::to_string(kMostTypesOfField) +
-          " values; name a field that says what the robot does");
-    }
-    const std::size_t datatype_end = type.type.find('[');
-    const std::size_t field_end = type.type.find('=', datatype_end);
-    if (field_end == std::string::npos) {
-      continue;
-    }
-    const std::string datatype = type.type.substr(0, datatype_end);
-    if (++types[datatype] > kMostTypesOfField) {
-      const std::string field = type.type.substr(datatype_end + 1, field_end - datatype_end - 1);
-      throw std::invalid_argument("the type field " + datatype + ": " + field + " has more than " +
-                                  std::to_string(kMostTypesOfField) +
-                                  " values; name a field that says what a message does, or none "
-                                  "for this datatype");
-    }
-  }
-  if (vocabulary.size() > kMostEventTypes) {
-    throw std::invalid_argument("there are more than " + std::to_string(kMostEventTypes) +
-                                " event types; leave topics or nodes out by the encoding");
-  }
-}
 
 core::EventId internUpTo(std::size_t most, const core::EventType& type,
                          core::Vocabulary& vocabulary) {
@@ -251,7 +110,8 @@ std::string whyLeftOut(const Connection& connection) {
     }
   }
   const core::EventType made_up{"", "", connection.datatype};
-  if (core::tellsMode(made_up) || core::isLatched(made_up)) {  // nobody else makes them up
+  if (core::tellsMode(made_up) || core::isLatched(made_up) ||
+      core::tellsList(made_up)) {  // nobody else makes them up
     return "the name '" + printable(connection.datatype, kLongestQuote) + "' on the topic " +
            printable(connection.topic, kLongestQuote) + " is no name of a type";
   }
@@ -308,6 +168,21 @@ core::EventId ConnectionEncoder::mode(const std::uint8_t* data, std::size_t size
   return idByValue(mode_field_->read(data, size), ids_by_mode_, [this](const std::string& value) {
     return core::typeOfMode(type_.type, value);
   });
+}
+
+std::optional<core::EventId> ConnectionEncoder::list(const std::uint8_t* data, std::size_t size,
+                                                     std::int64_t stamp) {
+  std::optional<core::Listed> listed =
+      listed_field_ ? listed_field_->next(data, size, stamp) : std::nullopt;
+  if (!listed) {
+    return std::nullopt;
+  }
+  std::set<std::string> renamed;  // frames have the namespace of their robot, as topics have
+  for (const std::string& value : listed->values) {
+    renamed.insert(renames_->apply("/" + value).substr(1));
+  }
+  listed->values = std::move(renamed);
+  return ids_({type_.source, type_.scope, core::typeOfList(type_.type, *listed)});
 }
 
 template <typename TypeOf>
@@ -401,9 +276,14 @@ std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) 
   encoder.type_ = *type;
   encoder.skip_next_ = connection.latching && !isRostopic(stableName(connection.callerid));
   const std::string field = typeFieldOf(rules_, connection);
-  if (!field.empty()) {
-    const auto classes = rules_.classes.find(connection.datatype);
-    const bool numeric = classes != rules_.classes.end();
+  const auto classes = rules_.classes.find(connection.datatype);
+  const bool numeric = classes != rules_.classes.end();
+  const auto listed = field.empty() || numeric ? std::nullopt : listFieldOf(connection, field);
+  // What is latched was sent before, and one connection may bring what several senders list.
+  if (listed && !connection.latching && !type->source.empty()) {
+    encoder.listed_field_ = std::make_shared<ListedField>(field, *listed);
+    encoder.renames_ = renames_;
+  } else if (!field.empty() && !listed) {
     encoder.field_ = std::make_shared<const MessageField>(
         connection.definition, connection.datatype, field,
         numeric ? MessageField::Kind::kNumber : MessageField::Kind::kText);

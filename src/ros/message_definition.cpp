@@ -180,39 +180,71 @@ const MessageDefinition::Lines& MessageDefinition::linesOf(const std::string& ty
   return lines->second;
 }
 
-MessageDefinition::Field MessageDefinition::field(const std::string& path, bool numbers) const {
-  Field found;
-  found.type = datatype_;
+MessageDefinition::Way MessageDefinition::wayTo(const std::string& type,
+                                                const std::string& path) const {
+  Way way;
+  way.field.type = type;
   Expansion expansion(*this);
   std::istringstream names(path);
   std::string name;
-  while (std::getline(names, name, '.')) {
-    const Lines& lines = linesOf(found.type);
+  while (way.array == nullptr && std::getline(names, name, '.')) {
+    const Lines& lines = linesOf(way.field.type);
     const auto line = std::find_if(lines.begin(), lines.end(),
                                    [&](const Line& each) { return each.name == name; });
     if (line == lines.end()) {
       fail("has no field " + quote(name) +
-           (found.type == datatype_ ? "" : " in its " + printable(found.type, kLongestQuote)));
-    }
-    if (!line->array.empty()) {
-      fail(quote(name) + " is an array; name a single value");
+           (way.field.type == datatype_ ? ""
+                                        : " in its " + printable(way.field.type, kLongestQuote)));
     }
     for (auto before = lines.begin(); before != line; ++before) {
-      expansion.append(*before, found.before);
+      expansion.append(*before, way.field.before);
     }
-    found.type = line->type;
+    way.field.type = line->type;
+    way.array = line->array.empty() ? nullptr : &*line;
   }
-  if (types_.count(found.type) > 0) {
+  std::getline(names, way.rest, '\0');
+  return way;
+}
+
+void MessageDefinition::check(const std::string& type, bool numbers) const {
+  if (types_.count(type) > 0) {
     fail("is a message itself; name one of its fields");
   }
-  if (numbers && (!isBuiltIn(found.type) || found.type == "string" || found.type == "time" ||
-                  found.type == "duration")) {
-    fail("is a " + printable(found.type, kLongestQuote) + "; only numbers have classes");
+  if (numbers && (!isBuiltIn(type) || type == "string" || type == "time" || type == "duration")) {
+    fail("is a " + printable(type, kLongestQuote) + "; only numbers have classes");
   }
-  if (!numbers && !readable(found.type)) {
-    fail("is a " + printable(found.type, kLongestQuote) +
+  if (!numbers && !readable(type)) {
+    fail("is a " + printable(type, kLongestQuote) +
          "; only integers, bool and string tell what a message does");
   }
+}
+
+MessageDefinition::Field MessageDefinition::field(const std::string& path, bool numbers) const {
+  Way way = wayTo(datatype_, path);
+  if (way.array != nullptr) {
+    fail(quote(way.array->name) + " is an array; name a single value");
+  }
+  check(way.field.type, numbers);
+  return std::move(way.field);
+}
+
+std::optional<MessageDefinition::ListField> MessageDefinition::listField(
+    const std::string& path) const {
+  Way way = wayTo(datatype_, path);
+  if (way.array == nullptr) {
+    return std::nullopt;
+  }
+  ListField found;
+  found.before = std::move(way.field.before);
+  found.length =
+      way.array->array == "[]" ? std::nullopt : std::optional(lengthOf(way.array->array));
+  Expansion(*this).append({way.field.type, "", way.array->name}, found.element);
+  Way inner = wayTo(way.field.type, way.rest);
+  if (inner.array != nullptr) {
+    fail(quote(inner.array->name) + " is an array in an array; name a field of one array");
+  }
+  check(inner.field.type, false);
+  found.field = std::move(inner.field);
   return found;
 }
 

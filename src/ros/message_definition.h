@@ -76,6 +76,18 @@ class MessageDefinition {
   /// @param numbers whether it must be a number or a bool; else it must be an integer, bool or
   /// string
   Field field(const std::string& path, bool numbers = false) const;
+  /// A field of all elements of an array.
+  struct ListField {
+    MessageSteps before;                  ///< what lies before the array
+    std::optional<std::uint32_t> length;  ///< of the array; none: the message says it
+    MessageSteps element;                 ///< across one
+    Field field;                          ///< in an element
+  };
+  /// @param path as for field(), e.g. "transforms.child_frame_id", or "name" of an array of
+  /// strings
+  /// @return none: it goes through no array
+  /// @throw std::invalid_argument as field(), or it goes through more than one array
+  std::optional<ListField> listField(const std::string& path) const;
   /// The steps across the whole message.
   /// @throw std::invalid_argument if a bound is exceeded, or the definition of a type is missing
   MessageSteps whole() const;
@@ -84,6 +96,15 @@ class MessageDefinition {
   class Expansion;
 
   static Lines parse(std::istream& text, std::string& next_type, const std::string& package);
+  /// Along a path, up to its end or to the first array on it.
+  struct Way {
+    Field field;
+    const Line* array = nullptr;  // in which it ends
+    std::string rest;             // of the path, behind the array
+  };
+  Way wayTo(const std::string& type, const std::string& path) const;
+  /// @throw std::invalid_argument if a field of a type cannot be read
+  void check(const std::string& type, bool numbers) const;
 
   std::string datatype_;
   std::map<std::string, Lines> types_;

@@ -13,7 +13,7 @@ namespace self_awareness::ros1 {
 /// one says. Fields are matched by their names, in messages within it, too. What the new layout
 /// does not have is left out; what the old one lacks becomes zero or empty.
 ///
-/// The old definition and the bytes may be a stranger's (docs/security.md): each length is checked
+/// The old definition and the bytes may be a stranger's (docs/monitor.md): each length is checked
 /// against the message, and the time that it takes follows the size of the message.
 class MessageUpgrade {
  public:

@@ -9,7 +9,7 @@
 namespace self_awareness::ros1 {
 
 /// Replaces names of nodes and topics: what is learned on one robot is about another one that has
-/// other names (docs/fleet.md).
+/// other names (docs/robots.md).
 class NameRenames {
  public:
   /// @throw std::invalid_argument names the rule whose pattern is no regular expression, or whose

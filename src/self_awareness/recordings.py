@@ -76,8 +76,8 @@ class RecordingEvents:
         missing: which of the subscriptions that the model expects, from a time [ns] on each, as
             an event log says.
         senders: what comes from two senders of one name, and what is played, from a time [ns] on.
-        attributes: of the messages, uint32, one for each stamp (docs/attributes.md); None: not
-            known.
+        attributes: of the messages, uint32, one for each stamp (docs/method.md, section 3.10);
+            None: not known.
         files: path and stamp of the first message [ns] of each file, of a bag.
     """
 
@@ -338,7 +338,7 @@ def unknown(model: TrainedModel, recording: RecordingEvents) -> Unknown:
     counts, unheard = np.bincount(recording.ids), model.unheard
     for index in recording.heard[recording.heard >= len(model.event_types)].tolist():
         kind = recording.event_types[index]
-        if kind.is_latched:
+        if not (kind.is_message or kind.tells_mode):
             continue
         (found.modes if kind.tells_mode else found.unheard if (kind.source, kind.scope) in unheard
          else found.new).append((int(counts[index]), str(kind)))

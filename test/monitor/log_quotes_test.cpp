@@ -1,5 +1,6 @@
 #include "monitor/log_quotes.h"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
 #include <rosgraph_msgs/Log.h>
 
@@ -36,14 +37,30 @@ std::string wordsOf(LogQuotes& quotes, core::EventId id) {
 TEST(LogQuotes, ANodeThatLogsAnewIsNamedWithWhatItSaid) {
   LogQuotes quotes;
   quotes.add(7, kError, line(8, "lost the laser\n\033[31mred"));
-  EXPECT_EQ(
-      wordsOf(quotes, 7),
-      "logged ERROR \"lost the laser \uFFFD[31mred\", and nothing of that level in training");
+  EXPECT_EQ(wordsOf(quotes, 7),
+            "/laser logged ERROR \"lost the laser \uFFFD[31mred\", and nothing of that level in "
+            "training");
   EXPECT_EQ(wordsOf(quotes, 8), "never seen in training, 1 in this window");
   quotes.add(7, kError, line(8, "again"));
   EXPECT_TRUE(has(wordsOf(quotes, 7), "\"again\"")) << "the last one";
   quotes.onCut(Cut::kOtherModel);
   EXPECT_EQ(wordsOf(quotes, 7), "never seen in training, 1 in this window");
+}
+
+TEST(LogQuotes, ANodeThatReportsAnErrorAnewIsNamedWithItsWorstStatus) {
+  diagnostic_msgs::DiagnosticArray message;
+  message.status.resize(2);
+  message.status[1].level = diagnostic_msgs::DiagnosticStatus::ERROR;
+  message.status[1].name = "gps";
+  message.status[1].message = "no fix";
+  const core::EventType error{"/gps", "/diagnostics",
+                              "diagnostic_msgs/DiagnosticArray[lists status.level: 2]"};
+  LogQuotes quotes;
+  quotes.add(7, error, ros1::serialized(message));
+  EXPECT_EQ(wordsOf(quotes, 7),
+            "/gps says on /diagnostics \"gps: no fix\", and nothing so bad in training");
+  quotes.add(8, error, {1, 2, 3});
+  EXPECT_EQ(wordsOf(quotes, 8), "never seen in training, 1 in this window");
 }
 
 TEST(LogQuotes, LongLinesAreCut) {

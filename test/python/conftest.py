@@ -1,8 +1,10 @@
 """Fixtures of the Python tests: real recordings, and small bags made to measure."""
 from __future__ import annotations
 
+import contextlib
 import copy
 import importlib
+import io
 import json
 import os
 import random
@@ -10,8 +12,8 @@ import subprocess
 import sys
 import time
 from pathlib import Path
-from typing import (Any, Callable, Dict, Iterable, Iterator, NamedTuple, Optional, Sequence,
-                    Tuple)
+from typing import (Any, Callable, Iterable, Iterator, NamedTuple, Optional, Sequence, Tuple,
+                    Union)
 
 import pytest
 import rosbag
@@ -43,6 +45,19 @@ def reader(tmp_path: Path) -> Iterator[Any]:
     reader.leave()
 
 
+def put(bag: rosbag.Bag, source: str, topic: str, message: Any, stamp: float) -> None:
+    """Write a message as `rosbag record` does, with the name of its sender.
+
+    Args:
+        source: the sender; '': it is not told.
+        stamp: when it was recorded [s].
+    """
+    header = {'topic': topic, 'type': message._type, 'md5sum': message._md5sum,
+              'message_definition': message._full_text}
+    bag.write(topic, message, rospy.Time.from_sec(stamp),
+              connection_header={**header, 'callerid': source} if source else header)
+
+
 def write_bag(path: Path, messages: Iterable[Message], sources: bool = True,
               compression: str = rosbag.Compression.NONE, text: Optional[str] = None) -> str:
     """Write std_msgs/String messages, or std_msgs/Header ones with `text` in frame_id.
@@ -50,16 +65,10 @@ def write_bag(path: Path, messages: Iterable[Message], sources: bool = True,
     Returns:
         the path, as the programs take it.
     """
-    kind = String if text is None else Header
     with rosbag.Bag(str(path), 'w', compression=compression) as bag:
         for index, (stamp, source, topic) in enumerate(messages):
-            header = {'topic': topic, 'type': kind._type, 'md5sum': kind._md5sum,
-                      'message_definition': kind._full_text}
-            if sources:
-                header['callerid'] = source
-            message = (String('x') if text is None
-                       else Header(frame_id=text.format(index)))
-            bag.write(topic, message, rospy.Time.from_sec(stamp), connection_header=header)
+            put(bag, source if sources else '', topic, String('x') if text is None
+                else Header(frame_id=text.format(index)), stamp)
     return str(path)
 
 
@@ -133,6 +142,13 @@ def robot_bags(tmp_path_factory: pytest.TempPathFactory) -> Tuple[str, str]:
     folder = tmp_path_factory.mktemp('robot')
     return (write_bag(folder / 'first.bag', robot(1000.0)),
             write_bag(folder / 'second.bag', robot(2000.033)))
+
+
+def trained(bags: Iterable[Union[str, Path]], path: Path, *options: str) -> TrainedModel:
+    """Let `train` write a model; return it."""
+    from self_awareness.commands import train
+    assert train.main([*map(str, bags), '-o', str(path), *options]) == 0
+    return TrainedModel.load(str(path))
 
 
 def train_tuned(bags: Sequence[str], path: Path, detector: str = 'evidence',
@@ -220,34 +236,41 @@ def cases(shared: Path, tmp_path_factory: pytest.TempPathFactory) -> Cases:
 
 
 @pytest.fixture
-def scored(cases: Cases, tmp_path: Path) -> Callable[..., Any]:
-    """Return a function that scores bags, and returns what is said of each."""
+def scored(cases: Cases, tmp_path: Path) -> Callable[[str], Any]:
+    """Return a function that scores a bag, and returns what is said of it, everywhere alike."""
+    from one_voice import check
+
     from self_awareness.commands import score
 
-    def scored(*bags: str, code: int = 0) -> Any:
-        said = tmp_path / 'said.json'
-        assert score.main([*bags, '--model', cases.model, '--json', str(said),
-                           '--report', str(tmp_path / 'r.html')]) == code
-        recordings: 'list[Dict[str, Any]]' = json.loads(said.read_text('utf-8'))['recordings']
+    def scored(bag: str) -> Any:
+        said, page, results = (tmp_path / name for name in ('said.json', 'r.html', 'results.bag'))
+        with contextlib.redirect_stdout(io.StringIO()) as out:
+            assert score.main([bag, '--model', cases.model, '--json', str(said), '--report',
+                               str(page), '--result-bag', str(results)]) == 0
+        print(out.getvalue(), end='')
+        recordings = json.loads(said.read_text('utf-8'))['recordings']
+        check(recordings[0], results, page, out.getvalue())
         return recordings
     return scored
 
 
 @pytest.fixture
 def of_its_own_robot(cases: Cases, tmp_path: Path) -> Callable[..., Any]:
-    """Return a function that says what is said of a recording of a case with its own robot."""
+    """Return a function that says what is said of recordings of a case with its own robot."""
     from self_awareness.commands import calibrate, score, train
 
-    def of_its_own_robot(name: str, recording: str, training: int = 4, normal: int = 6) -> Any:
-        subprocess.run([sys.executable, '-B', str(cases.folder / name / 'make.py')], check=True,
-                       env={**os.environ, 'OUT': str(tmp_path)}, stdout=subprocess.DEVNULL)
+    def of_its_own_robot(case: Union[str, Path], *recordings: str, training: int = 4,
+                         normal: int = 6) -> Any:
+        make = case if isinstance(case, Path) else cases.folder / case / 'make.py'
+        subprocess.run(
+            [sys.executable, '-B', str(make)], check=True, stdout=subprocess.DEVNULL,
+            env={**os.environ, 'OUT': str(tmp_path), 'LIB': str(cases.folder / 'lib')})
         bags = [str(tmp_path / f'n{place}.bag') for place in range(1, normal + 1)]
         model, said = str(tmp_path / 'm'), tmp_path / 'said.json'
         assert train.main([*bags[:training], '-o', model]) == 0
         assert calibrate.main(['--model', model, '--normal', *bags[training:],
                                '-o', model]) == 0
-        assert score.main([str(tmp_path / recording), '--model', model,
+        assert score.main([*(str(tmp_path / each) for each in recordings), '--model', model,
                            '--json', str(said)]) == 0
-        found, = json.loads(said.read_text('utf-8'))['recordings']
-        return found
+        return json.loads(said.read_text('utf-8'))['recordings']
     return of_its_own_robot

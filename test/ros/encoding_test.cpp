@@ -1,5 +1,6 @@
 #include "self_awareness/ros/encoding.h"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
 #include <std_msgs/String.h>
 #include <visualization_msgs/Marker.h>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,6 +23,8 @@
 
 namespace self_awareness::ros1 {
 namespace {
+
+constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 
 /// Why rules are refused; empty: they are not.
 std::string problemIn(const EncodingRules& rules) {
@@ -345,6 +349,90 @@ TEST_F(EncoderTest, AFieldOfATypeInMessagesIsTheirs) {
   EXPECT_FALSE(makeEncoder(rules).connect(connection)->needsContent()) << "one of many says less";
   connection.definition = "a/Goal status\n";
   EXPECT_FALSE(makeEncoder(rules).connect(connection)->needsContent()) << "it cannot be read";
+}
+
+/// Says what messages of /gps list, as they come by DiagnosticArray and by names.
+class ListTest : public EncoderTest {
+ protected:
+  void connect(const std::string& path, bool latching = false,
+               const std::string& sender = "/r1/gps") {
+    Connection connection = connectionOf<diagnostic_msgs::DiagnosticArray>(sender, "/r1/d");
+    connection.latching = latching;
+    EncodingRules rules;
+    rules.type_fields = {{"diagnostic_msgs/DiagnosticArray", path}};
+    rules.renames = {{"/r[0-9]+/(.*)", "/\\1"}};
+    encoder_ = makeEncoder(rules).connect(connection);
+  }
+  /// What a message with these names and levels tells, besides that it came; empty: nothing.
+  std::string told(std::int64_t stamp, const std::vector<std::pair<std::string, int>>& all) {
+    diagnostic_msgs::DiagnosticArray message;
+    for (const auto& [name, level] : all) {
+      message.status.emplace_back();
+      message.status.back().name = name;
+      message.status.back().level = static_cast<signed char>(level);
+    }
+    const std::vector<std::uint8_t> bytes = serialized(message);
+    const auto id = encoder_->list(bytes.data(), bytes.size(), stamp);
+    EXPECT_EQ(vocabulary_.at(encoder_->id(bytes.data(), bytes.size())).type,
+              "diagnostic_msgs/DiagnosticArray");
+    EXPECT_TRUE(!id || (vocabulary_.tellsList(*id) && !vocabulary_.isMessage(*id)));
+    return id ? vocabulary_.at(*id).type.substr(31) : "";
+  }
+
+  std::optional<ConnectionEncoder> encoder_;
+};
+
+TEST_F(ListTest, WhatMessagesListIsToldWhenItChangesAndOnceASecond) {
+  connect("status.name");
+  ASSERT_TRUE(encoder_->needsContent());
+  const std::string both = "[lists status.name: b, r1x]";
+  EXPECT_EQ(told(0, {{"r1/b", 0}, {"r1x", 0}}), both) << "renamed as topics are";
+  EXPECT_EQ(told(1, {{"r1x", 0}, {"r1/b", 0}}), "") << "the same, in another order";
+  EXPECT_EQ(told(2, {{"r1x", 0}}), "[lists status.name: r1x]");
+  EXPECT_EQ(told(3, {}), "") << "an empty one says nothing";
+  EXPECT_EQ(told(4, {{"r1/b", 0}, {"r1x", 0}}), both);
+  EXPECT_EQ(told(kSecond, {{"r1/b", 0}, {"r1x", 0}}), "");
+  EXPECT_EQ(told(kSecond + 4, {{"r1/b", 0}, {"r1x", 0}}), both) << "it lasts";
+  EXPECT_EQ(told(5, {{"r1/b", 0}, {"r1x", 0}}), both) << "the clock was set";
+}
+
+TEST_F(ListTest, OfNumbersTheLargestOneIsTold) {
+  connect("status.level");
+  EXPECT_EQ(told(0, {{"a", 0}, {"b", 2}, {"c", 1}}), "[lists status.level: 2]");
+}
+
+TEST_F(ListTest, WhoInventsListsIsNotFollowed) {
+  connect("status.name");
+  for (int k = 0; k < 16; ++k) {
+    EXPECT_EQ(told(k, {{std::to_string(k), 0}}), "[lists status.name: " + std::to_string(k) + "]");
+  }
+  EXPECT_EQ(told(16, {{"more", 0}}), "[lists status.name: ]");
+  EXPECT_EQ(told(17, {{"0", 0}}), "[lists status.name: ]");
+}
+
+TEST_F(ListTest, WhatIsLatchedOrOfNobodyListsNothing) {
+  connect("status.name", true);
+  EXPECT_FALSE(encoder_->needsContent());
+  connect("status.name", false, "");
+  EXPECT_FALSE(encoder_->needsContent());
+}
+
+TEST_F(ListTest, AFieldThatCannotBeListedIsNamed) {
+  EXPECT_EQ(problemOf([&] { connect("status.values.key"); }),
+            "type field diagnostic_msgs/DiagnosticArray: status.values.key: 'values' is an array "
+            "in an array; name a field of one array");
+  EXPECT_EQ(problemOf([&] { connect("status.gone"); }),
+            "type field diagnostic_msgs/DiagnosticArray: status.gone: has no field 'gone' in its "
+            "diagnostic_msgs/DiagnosticStatus");
+  EXPECT_EQ(problemOf([&] { connect("status"); }),
+            "type field diagnostic_msgs/DiagnosticArray: status: is a message itself; name one of "
+            "its fields");
+}
+
+TEST_F(ListTest, AMessageThatIsTooShortIsNotRead) {
+  connect("status.name");
+  const std::vector<std::uint8_t> bytes(16, 1);
+  EXPECT_THROW(encoder_->list(bytes.data(), bytes.size(), 0), std::out_of_range);
 }
 
 TEST_F(EncoderTest, TheOnlyMessageOfRostopicIsAnEvent) {

@@ -13,7 +13,7 @@
 namespace self_awareness::ros1 {
 
 /// Reads the attributes of the messages of one connection, in their order, while their bytes pass:
-/// nothing of them is kept but a sample (docs/attributes.md).
+/// nothing of them is kept but a sample (docs/method.md, section 3.10).
 class AttributeReader {
  public:
   /// Whether bytes are those of the last message is known by so many blocks of so many bytes at

@@ -26,7 +26,7 @@ struct Rename {
 
 bool operator==(const Rename& a, const Rename& b);
 
-/// Classes that the values of a numeric type field are put into (docs/encoding.md). A value that
+/// Classes that the values of a numeric type field are put into (docs/monitor.md). A value that
 /// is no number has one of its own.
 struct ValueClasses {
   static constexpr std::size_t kFewest = 2;
@@ -43,7 +43,7 @@ std::vector<std::string> namesOfClasses(const std::vector<double>& bounds);
 /// The class of a value, by its place among them.
 std::size_t classOf(double value, const std::vector<double>& bounds);
 
-/// What tells the mode that the robot is in (docs/modes.md): a field of the messages on a topic.
+/// What tells the mode that the robot is in (docs/robots.md): a field of the messages on a topic.
 struct ModeField {
   std::string topic;  ///< as the renames leave it
   std::string field;  ///< an integer, a bool or a string, not in an array; nested ones with dots
@@ -66,7 +66,8 @@ struct EncodingRules {
   std::vector<std::string> exclude_topics;
   std::vector<std::string> include_sources;  ///< empty: all; no effect for Source::kNone
   std::vector<std::string> exclude_sources;
-  /// Field by the datatype of messages, or of one of their own fields.
+  /// Field by the datatype of messages, or of one of their own fields. One that lies in an array
+  /// says what the messages list.
   std::map<std::string, std::string> type_fields;
   std::map<std::string, ValueClasses> classes;  ///< of some type fields, by datatype
   std::optional<ModeField> mode;                ///< none: nobody tells a mode
@@ -128,6 +129,7 @@ Connection connectionFrom(const ros::M_string& header, const std::string& topic)
 /// Gives an event type its id; a new type gets a new id where the vocabulary may grow.
 using EventIds = std::function<core::EventId(const core::EventType&)>;
 
+class ListedField;
 class NamePatterns;
 class NameRenames;
 
@@ -139,7 +141,9 @@ class ConnectionEncoder {
   /// which latches, it is: there may be no other. Call it once for every message.
   bool accept();
   /// Whether messages must be read; if not, all on this connection have one id.
-  bool needsContent() const { return field_ != nullptr || tellsMode(); }
+  bool needsContent() const {
+    return field_ != nullptr || listed_field_ != nullptr || tellsMode();
+  }
   /// Id of the event that says that a message is held ready, in place of one that accept() does
   /// not take (core/stream/latched.h); none: of lines for people, that says nothing.
   std::optional<core::EventId> latched();
@@ -154,6 +158,12 @@ class ConnectionEncoder {
   /// Id of that event by the message's content.
   /// @throw std::out_of_range if the message is shorter than its definition
   core::EventId mode(const std::uint8_t* data, std::size_t size);
+  /// Id of the event that says what the messages list, besides them (core/stream/listed.h): where
+  /// that has changed, and once a second; none: there is nothing to tell.
+  /// @param stamp of the message [ns]
+  /// @throw std::out_of_range if the message is shorter than its definition
+  std::optional<core::EventId> list(const std::uint8_t* data, std::size_t size,
+                                    std::int64_t stamp);
 
  private:
   friend class Encoder;
@@ -174,6 +184,8 @@ class ConnectionEncoder {
   Known ids_by_value_;
   std::shared_ptr<const MessageField> mode_field_;
   Known ids_by_mode_;
+  std::shared_ptr<ListedField> listed_field_;
+  std::shared_ptr<const NameRenames> renames_;  // of what is listed
 };
 
 /// Encodes the messages of all connections of one system.

@@ -11,7 +11,7 @@ namespace self_awareness::ros1 {
 /// test/python/evaluation/test_method_version.py tells that they are.
 constexpr std::uint32_t kMethod = 8;
 
-/// What this program writes of a kind of file, and so what it reads (docs/files.md).
+/// What this program writes of a kind of file, and so what it reads (docs/monitor.md).
 struct FileKind {
   const char* name;  ///< as in FileVersion.msg
   /// That is written; all from `first` on are read. A new one where a field, or a topic, is added,

@@ -11,7 +11,7 @@ class MessageCursor;
 
 /// Reads one field of a serialized message by the message's definition, without its C++ type. The
 /// field must not be in an array. Definitions are bounded
-/// (docs/encoding.md): they come from whoever publishes.
+/// (docs/monitor.md): they come from whoever publishes.
 class MessageField {
  public:
   enum class Kind {

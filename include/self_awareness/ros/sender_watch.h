@@ -19,7 +19,7 @@ namespace self_awareness::ros1 {
 using SenderStates = std::vector<std::pair<std::int64_t, core::Senders>>;
 
 /// Watches over which connections messages come, live and in bags: events name their sender, which
-/// may be two (docs/encoding.md).
+/// may be two (docs/monitor.md).
 ///
 /// Two connections of one sender on one topic are two processes of one name if messages come over
 /// them in turn: who was started again never speaks over the old one. `rosbag record` makes one of

@@ -48,8 +48,10 @@ class Judge : public core::Judge {
       scorer_.enter(event);  // one that training never saw is no stranger
       return std::nullopt;
     }
-    if (model_->vocabulary().isLatched(event.id) || (heard_ && heard_->isLatched(event.id))) {
-      return std::nullopt;
+    if (!model_->vocabulary().isMessage(event.id) || (heard_ && !heard_->isMessage(event.id))) {
+      return who_sends_.addList(event, accepted_)
+                 ? std::optional(ObservedEvent{event, true, std::nullopt})
+                 : std::nullopt;
     }
     const bool unknown = who_sends_.add(event, accepted_);
     const std::optional<std::int64_t> gap = scorer_.add(event);
@@ -315,7 +317,7 @@ std::string Judge::evidenceOf(const Judgement& judgement) const {
 
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
   std::vector<Suspect> first = explanation_.suspects(*unusual_, scorer_, events_);
-  addUnknown(window, first);
+  who_sends_.addUnknown(window, first);
   who_sends_.dropMovers(first);
   std::vector<Suspect> second = never_heard_.suspects();
   if (!silent_first || (!first.empty() && never_heard_.isMissedBy(first.front().id))) {

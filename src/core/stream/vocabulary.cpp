@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "self_awareness/core/stream/latched.h"
+#include "self_awareness/core/stream/listed.h"
 #include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core {
@@ -32,8 +33,10 @@ EventId Vocabulary::intern(const EventType& type) {
   const auto [entry, is_new] = ids_.try_emplace(type, static_cast<EventId>(types_.size()));
   if (is_new) {
     types_.push_back(type);
-    tells_mode_.push_back(core::tellsMode(type));
-    is_latched_.push_back(core::isLatched(type));
+    says_.push_back(core::tellsMode(type)   ? Says::kMode
+                    : core::isLatched(type) ? Says::kLatched
+                    : core::tellsList(type) ? Says::kList
+                                            : Says::kMessage);
   }
   return entry->second;
 }

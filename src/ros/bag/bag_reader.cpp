@@ -225,6 +225,12 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
       if (tells_mode) {
         handler({entry.stamp, connection_encoder->mode(content.data(), content.size())});
       }
+      if (const auto id =
+              accepted && needs_content
+                  ? connection_encoder->list(content.data(), content.size(), entry.stamp)
+                  : std::nullopt) {
+        handler({entry.stamp, *id, {}});
+      }
       if (accepted) {
         handler({entry.stamp,
                  needs_content ? connection_encoder->id(content.data(), content.size())

@@ -14,7 +14,7 @@ bool isOfEventLog(const Connection& connection);
 /// is large.
 bool mayBeEventLog(const std::vector<Connection>& connections);
 
-/// Whether a bag is an event log: by what it says of itself (docs/files.md), or because there is
+/// Whether a bag is an event log: by what it says of itself (docs/monitor.md), or because there is
 /// nothing else in it. What this version does not know may be in a log of a newer one only: in any
 /// other bag, somebody has recorded the topics of a log beside his own.
 /// @param index of the bag

@@ -8,7 +8,7 @@
 
 namespace self_awareness::ros1 {
 
-/// Events in few bytes, without loss (docs/event_log.md). Most of an event's bits are the last
+/// Events in few bytes, without loss (docs/bags.md). Most of an event's bits are the last
 /// digits of its time, which follow no rule: so each delay is stored as it is in `delay_bits`
 /// bits, and what is above these as that many ones and a zero (Rice's code, the shortest for
 /// delays that are exponential).

@@ -10,7 +10,7 @@
 
 namespace self_awareness::ros1 {
 
-/// Whether a bag with these connections says of what version it is (docs/files.md).
+/// Whether a bag with these connections says of what version it is (docs/monitor.md).
 bool tellVersion(const std::vector<Connection>& connections);
 
 /// What a bag says of its version; none: nothing.

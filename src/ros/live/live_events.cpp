@@ -198,10 +198,12 @@ void LiveEvents::onArrival(const Arrival& arrival) {
       if (!accepted) {
         return;
       }
-      event.id = encoder->id(content_.data(), content_.size());
-      if (handlers_.on_content) {
-        handlers_.on_content(event.id, content_);
+      if (const auto id = encoder->list(content_.data(), content_.size(), event.stamp)) {
+        tellContent(*id);
+        tell(live, {event.stamp, *id, {}}, arrival.steady);
       }
+      event.id = encoder->id(content_.data(), content_.size());
+      tellContent(event.id);
     } catch (const std::out_of_range& error) {
       ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->c_str(),
                          printable(error.what(), kLongestName).c_str());
@@ -209,6 +211,12 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     }
   }
   tell(live, event, arrival.steady);
+}
+
+void LiveEvents::tellContent(core::EventId id) const {
+  if (handlers_.on_content) {
+    handlers_.on_content(id, content_);
+  }
 }
 
 bool LiveEvents::isRead(const LiveConnection& live, const Arrival& arrival) {

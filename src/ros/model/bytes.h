@@ -17,10 +17,10 @@
 
 namespace self_awareness::ros1 {
 
-// Values as bytes, one after the other (docs/files.md). Whole numbers take seven bits a byte, the
-// lowest first; of signed ones, the lowest bit is the sign. Other numbers are as in the memory;
-// texts and lists follow their length. A struct is what its function fields() passes, the same one
-// for both directions.
+// Values as bytes, one after the other (docs/monitor.md). Whole numbers take seven bits a byte,
+// the lowest first; of signed ones, the lowest bit is the sign. Other numbers are as in the
+// memory; texts and lists follow their length. A struct is what its function fields() passes, the
+// same one for both directions.
 
 /// Writes values.
 class ByteWriter {

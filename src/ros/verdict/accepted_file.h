@@ -7,7 +7,7 @@
 
 namespace self_awareness::ros1 {
 
-/// The file of what is accepted beside a model (docs/accept.md).
+/// The file of what is accepted beside a model (docs/live.md).
 std::string pathOfAccepted(const std::string& model);
 
 /// Writes the whole file or nothing (see OutputFile).

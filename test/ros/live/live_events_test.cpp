@@ -2,6 +2,7 @@
 
 #include "self_awareness/ros/live/live_events.h"
 
+#include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -158,6 +159,24 @@ TEST_F(LiveEventsTest, WhatWasLatchedTellsTheModeThatLasts) {
   encode({}, kWindow, ModeField{"/latched", "data"});
   EXPECT_EQ(delivered(), (Types{latched, "std_msgs/String[mode: DOCKED]"}));
   EXPECT_EQ(delivered(), Types{});
+}
+
+TEST_F(LiveEventsTest, WhatMessagesListIsToldBesidesThem) {
+  const std::string type = "diagnostic_msgs/DiagnosticArray";
+  encode({{type, "status.level"}});
+  const ros::Publisher publisher =
+      node_handle_.advertise<diagnostic_msgs::DiagnosticArray>("/list", 10);
+  subscriptions_->listen(ownTopic("/list"));
+  await([&] { return publisher.getNumSubscribers() > 0; });
+  diagnostic_msgs::DiagnosticArray message;
+  message.status.resize(2);
+  for (int number = 1; number <= 3; ++number) {
+    message.status[1].level = static_cast<signed char>(number / 3);
+    publisher.publish(message);
+    await([&] { return live_events_->arrivals().arrived() == static_cast<unsigned>(number); });
+  }
+  EXPECT_EQ(delivered(), (Types{type + "[lists status.level: 0]", type, type,
+                                type + "[lists status.level: 1]", type}));
 }
 
 TEST_F(LiveEventsTest, WhereRosTimeDoesNotCountAttributesAreNotKnown) {

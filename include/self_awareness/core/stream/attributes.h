@@ -4,9 +4,9 @@
 
 namespace self_awareness::core {
 
-/// What a message is besides its time and its type, in classes of one byte (docs/attributes.md).
-/// The same classes are heard live, read from bags and kept in event logs, so that all judge
-/// alike.
+/// What a message is besides its time and its type, in classes of one byte (docs/method.md,
+/// section 3.10). The same classes are heard live, read from bags and kept in event logs, so that
+/// all judge alike.
 struct Attributes {
   /// What the number of a message says, after that of the message before it (header.seq).
   enum class Step : std::uint8_t {

@@ -9,7 +9,7 @@
 
 namespace self_awareness::core {
 
-/// The type of an event that tells the mode of the robot (docs/modes.md). It is no message of its
+/// The type of an event that tells the mode of the robot (docs/robots.md). It is no message of its
 /// own: the mode lasts until another one is told. No other event type is called so.
 /// @param datatype of the message that tells it
 /// @param mode as text

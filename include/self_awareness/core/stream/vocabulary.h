@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <map>
@@ -35,20 +36,25 @@ class Vocabulary {
   /// @throw std::out_of_range if there is no such id
   const EventType& at(EventId id) const { return types_.at(id); }
   /// Whether an id is that of a type that tells the mode of the robot (mode.h), or kOtherMode.
-  bool tellsMode(EventId id) const {
-    return id < tells_mode_.size() ? tells_mode_[id] : id == kOtherMode;
-  }
+  bool tellsMode(EventId id) const { return is(id, Says::kMode) || id == kOtherMode; }
   /// Whether an id is that of a type that says that a message is held ready (latched.h).
-  bool isLatched(EventId id) const { return id < is_latched_.size() && is_latched_[id]; }
-  /// Whether its events are messages of their own: neither of both.
-  bool isMessage(EventId id) const { return !tellsMode(id) && !isLatched(id); }
+  bool isLatched(EventId id) const { return is(id, Says::kLatched); }
+  /// Whether an id is that of a type that says what messages list (listed.h).
+  bool tellsList(EventId id) const { return is(id, Says::kList); }
+  /// Whether its events are messages of their own: none of these.
+  bool isMessage(EventId id) const {
+    return id < says_.size() ? says_[id] == Says::kMessage : id != kOtherMode;
+  }
   std::size_t size() const { return types_.size(); }
   const std::vector<EventType>& types() const { return types_; }
 
  private:
+  enum class Says : std::uint8_t { kMessage, kMode, kLatched, kList };
+
+  bool is(EventId id, Says what) const { return id < says_.size() && says_[id] == what; }
+
   std::vector<EventType> types_;
-  std::vector<bool> tells_mode_;  // by id: events ask all the time
-  std::vector<bool> is_latched_;  // the same
+  std::vector<Says> says_;  // by id: events ask all the time
   std::map<EventType, EventId> ids_;
 };
 

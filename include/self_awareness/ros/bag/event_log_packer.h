@@ -13,7 +13,7 @@
 
 namespace self_awareness::ros1 {
 
-/// Packs the events of one recording into the parts of an event log (docs/event_log.md).
+/// Packs the events of one recording into the parts of an event log (docs/bags.md).
 class EventLogPacker {
  public:
   /// A part is handed out when it lasts this long [ns]: what is lost in a crash is no more.

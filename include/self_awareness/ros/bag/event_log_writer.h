@@ -11,7 +11,7 @@
 
 namespace self_awareness::ros1 {
 
-/// Writes an event log: one recording after the other (docs/event_log.md). It is a bag with these
+/// Writes an event log: one recording after the other (docs/bags.md). It is a bag with these
 /// topics, kVersionTopic, and no others:
 constexpr char kEventLogStartTopic[] = "/event_log/start";  ///< EventLogStart
 constexpr char kEventLogTopic[] = "/event_log/events";      ///< EventLog

@@ -119,6 +119,7 @@ class LiveEvents {
   static bool isRead(const LiveConnection& live, const Arrival& arrival);
   /// Puts the bytes of a message into content_.
   void read(const Arrival& arrival);
+  void tellContent(core::EventId id) const;
   /// To another encoder: the mode, and what is latched.
   void tellLastingAgain();
   void tellLatched(LiveConnection& live, std::int64_t stamp, std::int64_t steady_time);

@@ -42,7 +42,7 @@ enum class ModelCounts {
 /// @throw ModelFileError if the file cannot be written, or loadModel() would refuse it
 /// @throw std::logic_error if watch() was not called, or counts were dropped
 void saveModel(const TrainedModel& model, const std::string& path);
-/// Reads a file of any version since the first (docs/files.md).
+/// Reads a file of any version since the first (docs/monitor.md).
 /// @throw ModelFileError if the file is missing, not a model, too new for this version, or damaged
 TrainedModel loadModel(const std::string& path, ModelCounts counts = ModelCounts::kAll);
 

@@ -130,7 +130,7 @@ void Trainer::add(const Event& event) {
     return;
   }
   countTicks(ran.stamp);
-  if (statistics_->vocabulary().isLatched(ran.id)) {
+  if (!statistics_->vocabulary().isMessage(ran.id)) {
     return;
   }
   counts_.add(ran.id);

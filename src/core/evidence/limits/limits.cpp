@@ -91,7 +91,7 @@ std::optional<ObservedEvent> LimitFinder::observe(const Event& event) {
   if (event.id < firsts_.size() && firsts_[event.id] < 0) {
     firsts_[event.id] = std::max<std::int64_t>(event.stamp - *first_stamp_, 0);
   }
-  if (model_->vocabulary().isLatched(event.id)) {
+  if (!model_->vocabulary().isMessage(event.id)) {
     return std::nullopt;
   }
   if (event.id < settled_at_.size() && settled_at_[event.id] == kNever) {

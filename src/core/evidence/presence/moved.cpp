@@ -33,8 +33,7 @@ Moved::Moved(std::shared_ptr<const Model> model, std::shared_ptr<const Vocabular
       has_other_value_(model_->size(), false) {
   for (EventId id = 0; id < model_->size(); ++id) {
     const EventType& type = model_->vocabulary().at(id);
-    if (!type.source.empty() && !model_->vocabulary().tellsMode(id) &&
-        !model_->vocabulary().isLatched(id)) {
+    if (!type.source.empty() && model_->vocabulary().isMessage(id)) {
       known_[{type.scope, type.type}].push_back(id);
       of_source_[type.source].push_back(id);
       if (const std::optional<EventType> any = withoutValue(type)) {

@@ -50,9 +50,8 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
     Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0, 0};
     const bool latched = model.vocabulary().isLatched(id);
     bool always = latched ? statistics.recordings().size() >= kFewestRecordings
-                          : !statistics.recordings().empty() &&
-                                statistics.type(id).gaps >= kFewestGaps &&
-                                !model.vocabulary().tellsMode(id);
+                          : model.vocabulary().isMessage(id) && !statistics.recordings().empty() &&
+                                statistics.type(id).gaps >= kFewestGaps;
     for (const Statistics::Recording& recording : statistics.recordings()) {
       const std::int64_t first = id < recording.firsts.size() ? recording.firsts[id] : -1;
       always = always && first >= 0;

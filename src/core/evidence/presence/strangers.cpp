@@ -13,24 +13,25 @@ const std::set<std::string> kBelowError{"[level=1]", "[level=2]", "[level=4]"};
 
 const std::set<std::string> kForEverybody{"/rosout", "/diagnostics", "/tf", "/tf_static"};
 
-/// An event type that training never saw, as a suspect of a window.
-Suspect unknownSuspect(EventId id, const Window& window) {
-  Suspect suspect;
-  suspect.id = id;
-  suspect.abnormal = true;
-  suspect.reason = strangerIn(static_cast<std::size_t>(
-      std::count_if(window.events.begin(), window.events.end(),
-                    [id](const ObservedEvent& other) { return other.event.id == id; })));
-  return suspect;
-}
-
 }  // namespace
 
 bool isForEverybody(const std::string& topic) {
   return kForEverybody.count(topic) > 0;
 }
 
-void addUnknown(const Window& window, std::vector<Suspect>& suspects) {
+Suspect Strangers::unknownSuspect(EventId id, const Window& window) const {
+  Suspect suspect;
+  suspect.id = id;
+  suspect.abnormal = true;
+  const std::optional<Reason> news = news_.reasonOf(id);
+  suspect.reason = news ? *news
+                        : strangerIn(static_cast<std::size_t>(std::count_if(
+                              window.events.begin(), window.events.end(),
+                              [id](const ObservedEvent& other) { return other.event.id == id; })));
+  return suspect;
+}
+
+void Strangers::addUnknown(const Window& window, std::vector<Suspect>& suspects) const {
   for (const ObservedEvent& observed : window.events) {
     const EventId id = observed.event.id;
     if (observed.unknown && suspects.size() < kMostSuspects &&
@@ -43,7 +44,11 @@ void addUnknown(const Window& window, std::vector<Suspect>& suspects) {
 
 Strangers::Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard,
                      std::shared_ptr<const SourceGraph> graph)
-    : size_(model.size()), heard_(std::move(heard)), graph_(std::move(graph)) {
+    : size_(model.size()),
+      most_lines_(model.tuning().least_told),
+      heard_(std::move(heard)),
+      graph_(std::move(graph)),
+      news_(model, heard_) {
   for (EventId id = 0; id < size_; ++id) {
     const std::string& topic = model.vocabulary().at(id).scope;
     sources_.insert(model.vocabulary().at(id).source);
@@ -75,12 +80,33 @@ bool Strangers::add(const Event& event, Accepted& accepted) {
   }
   const auto [known, is_new] = known_by_name_.try_emplace(event.id, false);
   if (is_new) {
-    known->second = isKnownByName(event.id) || isUsualLine(event.id);
+    known->second = isKnownByName(event.id);
   }
-  if (!known->second) {
+  const bool is_news = !known->second && (!isUsualLine(event.id) || isFlood(event));
+  if (is_news) {
     last_[event.id] = event.stamp;
   }
-  return !known->second;
+  return is_news;
+}
+
+bool Strangers::isFlood(const Event& line) {
+  Lines& lines = lines_.try_emplace(line.id, Lines{line.stamp, 0}).first->second;
+  if (line.stamp - std::exchange(lines.last, line.stamp) > kRateSpan) {
+    lines.number = 0;
+  }
+  return static_cast<double>(++lines.number) > most_lines_;
+}
+
+bool Strangers::addList(const Event& event, Accepted& accepted) {
+  if (event.id < size_ || !news_.isNewList(event.id)) {
+    return false;
+  }
+  if (accepted.isAcceptedStranger(event.id)) {
+    last_.erase(event.id);
+    return false;
+  }
+  last_[event.id] = event.stamp;
+  return true;
 }
 
 bool Strangers::isKnownByName(EventId id) const {
@@ -133,6 +159,9 @@ std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& sco
 bool Strangers::isStranger(EventId id) const {
   if (!heard_ || id >= heard_->size()) {
     return false;
+  }
+  if (heard_->tellsList(id)) {
+    return true;
   }
   const EventType& type = heard_->at(id);
   const auto known = known_.find(type.scope);

@@ -10,6 +10,7 @@
 #include "core/evidence/channel/scorer.h"
 #include "core/evidence/excuse/accepted.h"
 #include "core/evidence/presence/moved.h"
+#include "core/evidence/presence/news.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/source_graph.h"
@@ -19,10 +20,6 @@ namespace self_awareness::core::evidence {
 
 /// Whether every new node may send on a topic: that it does explains nothing.
 bool isForEverybody(const std::string& topic);
-
-/// Adds the unknown event types of a window that are not among its suspects yet, as long as these
-/// are fewer than kMostSuspects.
-void addUnknown(const Window& window, std::vector<Suspect>& suspects);
 
 /// Knows the senders that training never saw, on topics that it knows from others: what is unusual
 /// while they send is most likely their doing (docs/method.md, section 6).
@@ -38,10 +35,18 @@ class Strangers {
   /// @param excused knows who is accepted
   /// @return whether training does not know it, not even by its name: to hear what was published
   /// then, and had no subscriber, is no news; nor is who is accepted, nor a line below ERROR on
-  /// /rosout of who was there
+  /// /rosout of who was there, but for a flood of them: least_told without a pause of kRateSpan
   bool add(const Event& event, Accepted& accepted);
+  /// Takes in what messages list besides. @return whether that is news, and not accepted
+  bool addList(const Event& event, Accepted& accepted);
+  /// Adds the unknown event types of a window that are not among its suspects yet, as long as
+  /// these are fewer than kMostSuspects.
+  void addUnknown(const Window& window, std::vector<Suspect>& suspects) const;
   /// Forgets who was heard: a new recording starts, or the clock was set.
-  void restart() { last_.clear(); }
+  void restart() {
+    last_.clear();
+    lines_.clear();
+  }
   /// Time since somebody was heard who sends event types that the model does not know, by source
   /// [ns], at a time [ns]; empty where these types are not known.
   std::map<std::string, std::int64_t> silences(std::int64_t now) const;
@@ -51,18 +56,30 @@ class Strangers {
                                 const Moved& moved) const;
 
  private:
+  /// An event type that training never saw, as a suspect of a window.
+  Suspect unknownSuspect(EventId id, const Window& window) const;
   bool isStranger(EventId id) const;
   bool isKnownByName(EventId id) const;
   bool isUsualLine(EventId id) const;
+  bool isFlood(const Event& line);
+
+  /// Lines of a level that a sender never used.
+  struct Lines {
+    std::int64_t last = 0;     // stamp [ns]
+    std::uint64_t number = 0;  // without a pause
+  };
 
   std::map<std::string, std::vector<EventId>> known_;  // event types of the model, by topic
   std::size_t size_;                                   // of the model
+  double most_lines_;                                  // that are no flood
   std::set<std::string> sources_;                      // of the training
   std::set<SourceGraph::Publication> of_model_;
   std::shared_ptr<const Vocabulary> heard_;
   std::shared_ptr<const SourceGraph> graph_;
+  News news_;
   std::map<EventId, bool> known_by_name_;  // unknown types that were looked at
-  std::map<EventId, std::int64_t> last_;   // stamp of the last event of an unknown type [ns]
+  std::map<EventId, Lines> lines_;
+  std::map<EventId, std::int64_t> last_;  // stamp of the last event of an unknown type [ns]
 };
 
 }  // namespace self_awareness::core::evidence

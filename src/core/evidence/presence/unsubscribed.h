@@ -16,7 +16,7 @@
 namespace self_awareness::core::evidence {
 
 /// Notices components that run, and do not subscribe to what they did in every start of the
-/// training (docs/connections.md). A start takes its time, and so does a restart: what is missing
+/// training (docs/robots.md). A start takes its time, and so does a restart: what is missing
 /// for no longer than that is normal.
 class Unsubscribed {
  public:

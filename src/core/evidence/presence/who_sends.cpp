@@ -26,6 +26,10 @@ bool WhoSends::add(const Event& event, Accepted& accepted) {
   return strangers_.add(event, accepted);
 }
 
+bool WhoSends::addList(const Event& event, Accepted& accepted) {
+  return strangers_.addList(event, accepted);
+}
+
 void WhoSends::set(const Senders& senders) {
   two_senders_.set(senders.doubled);
   players_.set(senders.played);
@@ -91,7 +95,7 @@ std::vector<Suspect> WhoSends::alone(const Window& window, const Scorer& scorer,
   append(moved_.suspects(all), named);
   append(strangers(window, scorer), named);
   if (all) {
-    addUnknown(window, named);
+    strangers_.addUnknown(window, named);
     dropMovers(named);
   }
   return named;

@@ -21,7 +21,7 @@
 
 namespace self_awareness::core::evidence {
 
-/// Knows who sends that did not in training (docs/senders.md): strangers, who has the place of
+/// Knows who sends that did not in training (docs/robots.md): strangers, who has the place of
 /// others, players, and who has the name of others.
 class WhoSends {
  public:
@@ -34,6 +34,12 @@ class WhoSends {
 
   /// Takes in the next event. @return as Strangers::add()
   bool add(const Event& event, Accepted& accepted);
+  /// Takes in what messages list besides. @return as Strangers::addList()
+  bool addList(const Event& event, Accepted& accepted);
+  /// As Strangers::addUnknown().
+  void addUnknown(const Window& window, std::vector<Suspect>& suspects) const {
+    strangers_.addUnknown(window, suspects);
+  }
   /// Takes note of what events do not say, from now on.
   void set(const Senders& senders);
   /// Forgets who was heard.

@@ -58,7 +58,7 @@ class ExplanationTest : public testing::Test {
     std::vector<Suspect> named =
         Explanation(model_, std::make_shared<Upstream>(model_->components(), graph_))
             .suspects(excessesOf(model_, shares, scorer_), scorer_, events_);
-    addUnknown(window, named);
+    Strangers(*model_, nullptr, graph_).addUnknown(window, named);
     return named;
   }
   static Track overdue(EventId id) { return trackOf(kOverdue, id, id); }
@@ -70,10 +70,6 @@ class ExplanationTest : public testing::Test {
   RecentEvents events_{model_->size()};
   std::int64_t last_ = 0;
 };
-
-TEST_F(ExplanationTest, NoEvidenceNamesNoSuspect) {
-  EXPECT_TRUE(suspects({}, last_ + kWindow).empty());
-}
 
 TEST_F(ExplanationTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
   const std::int64_t end = last_ + 5 * kSecond;
@@ -139,16 +135,6 @@ TEST_F(ExplanationTest, OfWhoIsStillHeardATopicIsSilentOrAnAnswerMissing) {
   add({last_ + 30 * kSecond, kC});
   EXPECT_EQ(toString(kindOf(overdue(kB))), "topic silent");
   EXPECT_EQ(toString(kindOf(trackOf(kDeadlines, kB, kA))), "unanswered");
-}
-
-TEST_F(ExplanationTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
-  const std::int64_t end = last_ + 2 * model_->longestGap(kA);
-  ASSERT_LT(model_->logSurvival(kA, end - *scorer_.heard().lastSeen(kA)),
-            std::log(model_->tuning().rare_silence));
-  const Track fewer = trackOf(kSlower, kA, kA);
-  // At half its rate its age is rare, too, but no more than that.
-  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kSlow);
-  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kSilent);
 }
 
 TEST_F(ExplanationTest, LongerGapsAreSaidAsAnotherRateNotAsASilence) {
@@ -278,12 +264,6 @@ TEST_F(ExplanationTest, WhoOwesAnAnswerIsNamedAsASilentOne) {
   EXPECT_EQ(idsOf(named), (std::vector<EventId>{kB, kC}));
   EXPECT_EQ(named.front().reason.kind, Kind::kSilent);
   EXPECT_EQ(named.front().reason.words, "has not come for 2.00 s after /a /x T");
-}
-
-TEST_F(ExplanationTest, SilentOnesComeBeforeUnusualOnes) {
-  const std::vector<Suspect> named =
-      suspects({{trackOf(kFaster, kC, kC), 2}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
-  EXPECT_EQ(idsOf(named), (std::vector<EventId>{kA, kC}));
 }
 
 TEST_F(ExplanationTest, WhoIsLateAfterOneThatIsUnusualIsNotNamed) {

@@ -108,13 +108,8 @@ TEST_F(NeverHeardTest, WhatComesAtOnceHasTimeUntilItIsDue) {
   EXPECT_EQ(named(never_heard), (std::vector<EventId>{kB, kC}));
   EXPECT_LT(shareAt(never_heard, 64 * kSecond), 1);  // at least 60 s after that
   EXPECT_GT(shareAt(never_heard, 66 * kSecond), 1);
-}
-
-TEST_F(NeverHeardTest, ItIsAnAlarmForAMinuteAndASuspicionFromThenOn) {
-  NeverHeard never_heard = neverHeardBut({kA});
-  EXPECT_GT(shareAt(never_heard, 66 * kSecond), 1);
   EXPECT_GT(shareAt(never_heard, 125 * kSecond), 1);
-  EXPECT_EQ(shareAt(never_heard, 126 * kSecond), 1);
+  EXPECT_EQ(shareAt(never_heard, 126 * kSecond), 1) << "for a minute, and suspicious from then on";
   EXPECT_FALSE(never_heard.suspects().front().abnormal);
 }
 
@@ -237,39 +232,6 @@ TEST_F(NeverHeardTest, TheFirstEventOfAnyIdIsTheStart) {
   EXPECT_EQ(shareAt(never_heard, 2005 * kSecond), 0);
   EXPECT_GT(shareAt(never_heard, 2006 * kSecond), 0);
   EXPECT_EQ(named(never_heard), (std::vector<EventId>{kB, kC}));
-}
-
-TEST_F(NeverHeardTest, TheRootComesFirst) {
-  graph_->connect("/c", "/z", "/b");
-  NeverHeard never_heard = neverHeardBut({kA});
-  shareAt(never_heard, 6 * kSecond);
-  EXPECT_EQ(named(never_heard), (std::vector<EventId>{kC, kB}));
-}
-
-TEST_F(NeverHeardTest, TheJudgeSuspectsAndThenAlarms) {
-  std::optional<double> suspected;
-  std::optional<double> raised;
-  std::vector<Suspect> suspects;
-  std::string evidence;
-  judge(makeJudge(model_, allLimits(*model_, kNone), kWindow, graph_),
-        start(std::nullopt, 3, 120 * kSecond), [&](const Verdict& verdict) {
-          const double end = toSeconds(verdict.window->start + kWindow);
-          if (verdict.suspicion && !suspected) {
-            suspected = end;
-          }
-          if (verdict.alarm && !raised) {
-            raised = end;
-            suspects = verdict.suspects;
-            evidence = verdict.evidence;
-            EXPECT_LT(*verdict.score, kThreshold);
-          }
-        });
-  EXPECT_NEAR(suspected.value(), 5.2, 0.3);
-  EXPECT_NEAR(raised.value(), 65.2, 0.3);
-  EXPECT_EQ(evidence, "never heard");
-  ASSERT_EQ(suspects.size(), 1U);
-  EXPECT_EQ(suspects.front().id, kC);
-  EXPECT_EQ(suspects.front().reason.kind, Kind::kNeverCame);
 }
 
 TEST_F(NeverHeardTest, WhatFellSilentIsNamedBeforeWhatNeverCame) {

@@ -9,7 +9,9 @@
 
 #include "../../verdict/accepted.h"
 #include "../tracks.h"
+#include "core/evidence/presence/news.h"
 #include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/stream/listed.h"
 #include "self_awareness/core/verdict/alarm.h"
 #include "self_awareness/core/verdict/detector.h"
 
@@ -110,6 +112,78 @@ TEST_F(SendersTest, ATopicThatComesFromAnotherNodeIsOneSuspicion) {
             "/y comes from /manager now, in training from /b; not watched until you train again "
             "with --rename /manager /b; to accept it: ~accept \"{component: /manager, kind: "
             "stranger}\"");
+}
+
+/// Knows what /d listed in recordings, one list each, and what /a did with values.
+class NewsTest : public testing::Test {
+ protected:
+  using Lists = std::vector<std::set<std::string>>;
+
+  static EventType list(const std::set<std::string>& values, const std::string& field = "f.name") {
+    return {"/d", "/tf", typeOfList("F", {field, values})};
+  }
+  /// What is said of a list that comes after recordings with these; empty: nothing.
+  static std::string said(const Lists& recordings, const EventType& next) {
+    std::vector<EventType> types = kRobot;
+    types.push_back({"/a", "/goal", "G[status=3]"});
+    std::vector<Events> all;
+    for (const std::set<std::string>& values : recordings) {
+      const auto place = std::find(types.begin(), types.end(), list(values));
+      const auto id = static_cast<EventId>(place - types.begin());
+      if (place == types.end()) {
+        types.push_back(list(values));
+      }
+      const auto number = static_cast<std::int64_t>(all.size());
+      all.push_back(robot(number * kStart, 20 * kSecond, 7));
+      all.back().push_back({all.back().back().stamp, id});
+      all.back().push_back({all.back().back().stamp, static_cast<EventId>(kRobot.size())});
+    }
+    const auto model = std::make_shared<Model>(
+        watchAll(countsOf(all, types), countsOf(std::vector<Events>(), types)));
+    const auto heard = std::make_shared<Vocabulary>(model->vocabulary());
+    const std::optional<Reason> reason = News(*model, heard).reasonOf(heard->intern(next));
+    return reason ? reason->words : "";
+  }
+};
+
+TEST_F(NewsTest, WhatASenderDoesNotListAnyMoreIsTold) {
+  const Lists twice{{"arm", "laser", "wheel"}, {"arm", "laser", "wheel"}};
+  EXPECT_EQ(said(twice, list({"arm", "wheel"})),
+            "/d sends /tf without laser (f.name), as never in training");
+  EXPECT_EQ(said(twice, list({"arm", "ghost", "laser", "wheel"})),
+            "/d sends /tf with f.name=ghost, as never in training");
+  EXPECT_EQ(said({{"a", "b"}, {"a", "b"}, {"c", "d"}, {"c", "d"}}, list({"a", "c"})),
+            "/d sends /tf with other f.name together, as never in training");
+}
+
+TEST_F(NewsTest, WhoListedSomethingOnceMayListOtherThings) {
+  EXPECT_EQ(said({{"a", "b"}, {"a", "b"}, {"c", "b"}}, list({"b"})), "");
+  EXPECT_EQ(said({{"a", "b"}}, list({"b"})), "") << "one recording tells nothing";
+  EXPECT_EQ(said({{}, {}, {"a", "b"}, {"a", "b"}}, list({"b"})), "") << "too many to tell apart";
+  EXPECT_EQ(said({{"a", "b"}, {"a", "b"}}, list({})), "");
+  EXPECT_EQ(said({{"a", "b"}, {"a", "b"}}, list({"b"}, "g.name")), "") << "of another field";
+}
+
+TEST_F(NewsTest, ALevelBelowErrorIsTheNodesOwn) {
+  const auto level = [](const std::string& value) {
+    return EventType{"/d", "/tf", typeOfList("F", {"status.level", {value}})};
+  };
+  const std::vector<EventType> types{{"/d", "/tf", "F"}, level("0")};
+  const Events once{{0, 0}, {1, 1}, {kSecond, 0}};
+  const Events again{{kStart, 0}, {kStart + 1, 1}, {kStart + kSecond, 0}};
+  const auto model = std::make_shared<Model>(
+      watchAll(countsOf({once, again}, types), countsOf(std::vector<Events>(), types)));
+  const auto heard = std::make_shared<Vocabulary>(model->vocabulary());
+  const News news(*model, heard);
+  EXPECT_FALSE(news.isNewList(heard->intern(level("1"))));
+  EXPECT_TRUE(news.isNewList(heard->intern(level("2"))));
+}
+
+TEST_F(NewsTest, AnotherValueIsToldByItsName) {
+  EXPECT_EQ(said({{"a"}}, {"/a", "/goal", "G[status=4]"}),
+            "/a sends /goal with status=4, as never in training");
+  EXPECT_EQ(said({{"a"}}, {"/b", "/goal", "G[status=4]"}), "") << "another sender";
+  EXPECT_EQ(said({{"a"}}, {"/a", "/other", "G"}), "");
 }
 
 TEST_F(SendersTest, WhatIsAcceptedMayComeFromAnotherNode) {

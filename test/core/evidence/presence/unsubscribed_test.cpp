@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -63,14 +61,6 @@ TEST_F(UnsubscribedTest, WhatComesBackInTimeIsNoNews) {
   }
 }
 
-TEST_F(UnsubscribedTest, ItIsOverWhenItSubscribes) {
-  unsubscribed_.set({{"/faces", "/image"}});
-  at(0);
-  EXPECT_TRUE(at(61));
-  unsubscribed_.set({});
-  EXPECT_FALSE(at(62));
-}
-
 TEST_F(UnsubscribedTest, AnotherOneThatIsMissingDoesNotBeginItAnew) {
   unsubscribed_.set({{"/faces", "/image"}});
   at(0);
@@ -89,22 +79,6 @@ TEST_F(UnsubscribedTest, AComponentIsOneFindingWhateverItMisses) {
   EXPECT_EQ(words(),
             std::vector<std::string>{
                 "/faces does not subscribe to /a, /b, /c and 1 more, as it did in all 2 starts"});
-}
-
-TEST_F(UnsubscribedTest, WhatIsAcceptedIsNotMissing) {
-  unsubscribed_.set({{"/faces", "/image"}});
-  at(0);
-  EXPECT_TRUE(at(61));
-  EXPECT_EQ(unsubscribed_.suspects().front().reason.topics, std::vector<std::string>{"/image"});
-  unsubscribed_.accept(allOf({accepted("/faces", "/image", Kind::kUnsubscribed)}));
-  EXPECT_FALSE(at(62));
-  unsubscribed_.set({{"/faces", "/image"}, {"/faces", "/depth"}});
-  EXPECT_FALSE(at(63));
-  EXPECT_TRUE(at(124)) << "another topic is missing";
-  EXPECT_EQ(unsubscribed_.suspects().front().reason.topics, std::vector<std::string>{"/depth"});
-  unsubscribed_.accept({});
-  EXPECT_TRUE(at(125));
-  EXPECT_EQ(unsubscribed_.suspects().front().reason.topics.size(), 2U);
 }
 
 TEST_F(UnsubscribedTest, ASetClockBeginsItAnew) {

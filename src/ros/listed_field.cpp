@@ -1,0 +1,58 @@
+#include "listed_field.h"
+
+#include <string_view>
+#include <utility>
+
+#include "message_cursor.h"
+#include "message_value.h"
+
+namespace self_awareness::ros1 {
+
+ListedField::ListedField(std::string path, MessageDefinition::ListField field)
+    : path_(std::move(path)), field_(std::move(field)) {}
+
+std::optional<core::Listed> ListedField::next(const std::uint8_t* data, std::size_t size,
+                                              std::int64_t stamp) {
+  std::set<std::string> values = read(data, size);
+  const bool is_told = told_ && stamp >= *told_ && stamp - *told_ < kAgain;
+  // An empty array says nothing of what else there is.
+  if (values.empty() || (is_told && values == last_)) {
+    return std::nullopt;
+  }
+  told_ = stamp;
+  last_ = values;
+  if (lists_.size() <= kMostLists) {
+    lists_.insert(values);
+  }
+  return core::Listed{path_,
+                      lists_.size() > kMostLists ? std::set<std::string>() : std::move(values)};
+}
+
+std::set<std::string> ListedField::read(const std::uint8_t* data, std::size_t size) const {
+  const auto pass = [](std::string_view /*passed*/) {};
+  MessageCursor cursor(data, size);
+  cursor.cross(field_.before, pass);
+  const std::uint64_t length = field_.length ? *field_.length : cursor.number<std::uint32_t>();
+  const bool is_text = field_.field.type == "string";
+  std::set<std::string> values;
+  std::optional<double> largest;
+  for (std::uint64_t i = 0; i < length && !field_.element.empty(); ++i) {
+    MessageCursor element = cursor;
+    cursor.cross(field_.element, pass);
+    element.cross(field_.field.before, pass);
+    MessageCursor value = element;
+    const double number = is_text ? 0 : withNumber(field_.field.type, value, [](auto found) {
+      return static_cast<double>(found);
+    });
+    if (is_text || !largest || number > *largest) {
+      largest = number;
+      if (!is_text) {
+        values.clear();
+      }
+      values.insert(textOf(field_.field.type, element));
+    }
+  }
+  return values;
+}
+
+}  // namespace self_awareness::ros1
