@@ -7,7 +7,7 @@
 ...         print(alarm.kind, alarm.culprit)
 silent /laser
 
-docs/python.md tells more. The method is implemented once, in C++; the other names here are its
+docs/library.md tells more. The method is implemented once, in C++; the other names here are its
 parts, which the programs (`self_awareness.commands`) are made of.
 """
 from typing import TYPE_CHECKING, Any

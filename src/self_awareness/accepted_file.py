@@ -1,4 +1,4 @@
-"""What operators have accepted as normal (docs/accept.md), in the file beside a model."""
+"""What operators have accepted as normal (docs/live.md), in the file beside a model."""
 from __future__ import annotations
 
 import os

@@ -1,4 +1,4 @@
-"""The package as a library: learn a model from bags, and judge others by it (docs/python.md)."""
+"""The package as a library: learn a model from bags, and judge others by it (docs/library.md)."""
 from __future__ import annotations
 
 import json

@@ -43,10 +43,10 @@ def test_the_examples_of_docstrings_do_what_they_say(module, folder: Path,
 def test_the_code_of_the_page_does_what_it_says(folder: Path,
                                                 monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
-    text = (ROOT / 'docs/python.md').read_text(encoding='utf-8')
+    text = (ROOT / 'docs/library.md').read_text(encoding='utf-8')
     blocks = re.findall(r'```python\n(.*?)```', text, re.DOTALL)
     assert len(blocks) > 3
-    code = doctest.DocTestParser().get_doctest(''.join(blocks), {}, 'python.md', None, 0)
+    code = doctest.DocTestParser().get_doctest(''.join(blocks), {}, 'library.md', None, 0)
     assert len(code.examples) > 8
     runner = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS)
     runner.run(code)
@@ -70,13 +70,7 @@ def test_it_learns_and_judges_as_the_programs_do(folder: Path, tmp_path: Path, c
     assert alarms.table() == json.loads(values.read_text())['recordings'][0]['alarms']
     assert alarms[-1].level == 'ERROR' and alarms[:1][0].begin == alarms[0].begin
     assert len(alarms) == len(list(alarms)) >= 1
-
-
-def test_several_processes_learn_the_same(folder: Path) -> None:
-    bags = [folder / f'{name}.bag' for name in ('monday', 'tuesday', 'wednesday')]
-    one, two = (sa.learn(bags, jobs=jobs).trained for jobs in (1, 2))
-    assert one.calibration.limits == pytest.approx(two.calibration.limits, nan_ok=True)
-    assert [each.bag for each in two.recordings] == [bag.name for bag in bags]
+    assert str(alarms[-1]).startswith(f'{alarms[-1].culprit} (')
 
 
 def test_a_part_of_a_recording_is_judged(folder: Path) -> None:
@@ -97,13 +91,6 @@ def test_a_part_of_a_recording_is_judged(folder: Path) -> None:
 def test_mistakes_are_told(folder: Path, mistake: Callable, said: str) -> None:
     with pytest.raises((ValueError, OSError, RuntimeError), match=re.escape(said)):
         mistake(folder, sa.load(folder / 'robot.model'))
-
-
-def test_a_model_without_limits_judges_nothing(folder: Path) -> None:
-    model = sa.load(folder / 'robot.model')
-    model.trained.calibration = None
-    with pytest.raises(ValueError, match='calibrate it'):
-        model.judge(folder / 'crash.bag')
 
 
 def test_names_that_are_not_there_are_told() -> None:

@@ -14,6 +14,7 @@ from self_awareness import Coverage, EventType, TrainedModel
 from self_awareness.calibration import heads_and_tails
 from self_awareness.calibration.heads_and_tails import Silence, Silences, component_of
 from self_awareness.parts import BagPart
+from self_awareness.reporting.text import duration
 from self_awareness.stamps import SECOND_NS
 
 _FEWEST_OTHERS = 2
@@ -115,14 +116,15 @@ def _decides(hole: Hole, found_s: Optional[float]) -> bool:
 def _line(hole: Hole, found_s: Optional[float]) -> str:
     silence = hole.silence
     text = (f'{hole.part}: {hole.component} ({hole.kind.scope}) is silent for '
-            f'{silence.length_s:.1f} s from {silence.begin_s:.1f} s on, {hole.others_s:.2g} s at '
-            'most in the other recordings')
+            f'{silence.length_s:.1f} s from {silence.begin_s:.1f} s on, '
+            f'{duration(hole.others_s)} at most in the other recordings')
     if found_s is None:
         return text
     if _decides(hole, found_s):
-        return (f'{text}; because of that its death is found after {found_s:.2g} s instead of '
-                f'about {found_s * hole.others_s / silence.length_s:.2g} s')
-    return f'{text}; its death is found after {found_s:.2g} s all the same, as most starts agree'
+        return (f'{text}; because of that its death is found after {duration(found_s)} instead of '
+                f'about {duration(found_s * hole.others_s / silence.length_s)}')
+    return (f'{text}; its death is found after {duration(found_s)} all the same, as most starts '
+            'agree')
 
 
 def _pieces(part: BagPart, silences: Sequence[Silence]) -> List[BagPart]:

@@ -25,9 +25,9 @@ from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, load_model, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, save_table
 from self_awareness.parts import BagPart, Named, by_folder, look
-from self_awareness.reporting import coverage_text, evidence_report
+from self_awareness.reporting import coverage_text, evidence_report, verdict
 from self_awareness.reporting.plots import save_roc
-from self_awareness.reporting.text import cell, rounded
+from self_awareness.reporting.text import cell, duration, rounded
 from self_awareness.stamps import SECOND_NS
 
 _COLUMNS = ('bag', 'fault', 'window_start_ns', 'events', 'unknown', 'score', 'label')
@@ -92,17 +92,18 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     if arguments.detector == 'evidence':
         measured = _find_limits(arguments, trained, parameters, normal_runs, recorded, faults,
                                 accepted)
-        coverage = measured.by_budget[arguments.budget]
-        evidence_report.print_verdict(trained, coverage)
+        cli.print_lines(verdict.lines(trained))
         silences = [(each.part, heads_and_tails.silences(each)) for each in normal]
-        for line in heads_and_tails.lines(silences, 'BAG@START', 'BAG@0-END'):
-            print(line)
-        _say_holes(trained, silences)
-        evidence_report.print_coverage(trained, coverage)
-        evidence_report.print_budgets(measured.by_budget)
-        evidence_report.print_measured(measured.normal, measured.false_alarms)
-        evidence_report.print_faults(measured.faulty)
-        evidence_report.print_not_tried(measured.injected)
+        _say_holes(trained, silences, arguments.details)
+        if arguments.details:
+            cli.print_lines([
+                *heads_and_tails.lines(silences, 'BAG@START', 'BAG@0-END'),
+                *evidence_report.coverage(trained, measured.by_budget[arguments.budget]),
+                *evidence_report.budgets(measured.by_budget)])
+        cli.print_lines([
+            *evidence_report.on_normal(measured.normal, measured.false_alarms, arguments.details),
+            *evidence_report.faults(measured.faulty, arguments.details),
+            *(evidence_report.not_tried(measured.injected) if arguments.details else [])])
     else:
         measured = _find_threshold(trained, parameters, arguments.cutoff, normal_runs, recorded,
                                    faults)
@@ -119,7 +120,8 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     trained.save(arguments.output)
     _keep_accepted(arguments, trained)
     cli.say_skipped('calibrate', normal_bags.bad + faulty_bags.bad)
-    print(f'written: {arguments.output}')
+    cli.print_lines([f'written: {arguments.output}',
+                     *verdict.next_steps(trained, arguments.output)])
 
 
 def _named(arguments: argparse.Namespace) -> List[Named]:
@@ -151,12 +153,14 @@ def _keep_accepted(arguments: argparse.Namespace, trained: TrainedModel) -> None
             print(line)
 
 
-def _say_holes(trained: TrainedModel, silences: Sequence[Tuple[BagPart, Silences]]) -> None:
+def _say_holes(trained: TrainedModel, silences: Sequence[Tuple[BagPart, Silences]],
+               details: bool) -> None:
     found = holes.find(silences, holes.known_silences(trained))
     coverage = trained.coverage()
-    for line in holes.lines(found, coverage):
+    deciding = holes.deciding(found, coverage)
+    for line in holes.lines(found if details else deciding, coverage):
         cli.warn('calibrate', line)
-    if holes.deciding(found, coverage):
+    if deciding:
         left = ' '.join(map(str, holes.without([part for part, _ in silences], found)))
         cli.warn('calibrate', f'if that was a fault, leave it out: --normal {left}')
 
@@ -289,9 +293,9 @@ def _print(cutoff: ThresholdRule, measured: _Measured) -> None:
 
 def _print_false_alarms(alarms: FalseAlarms) -> None:
     low, high = alarms.interval
-    print(f'  false alarms after persistence: {alarms.count} in {alarms.hours:.3f} h, '
-          f'{rounded(alarms.per_hour, 3)} an hour (95 %: {rounded(low, 3)} to '
-          f'{rounded(high, 3)})')
+    print(f'  false alarms after persistence: {alarms.count} in '
+          f'{duration(3600.0 * alarms.hours)}, {rounded(alarms.per_hour, 3)} an hour '
+          f'(95 %: {rounded(low, 3)} to {rounded(high, 3)})')
     needed = confidence.poisson_rate(0, 1.0)[1]
     if alarms.hours < needed:
         print(f'  too little to say whether there is less than one an hour: that takes '
@@ -338,16 +342,19 @@ def _parser() -> argparse.ArgumentParser:
                         help='file to write; may be the same model')
     cli.add_robots_by_folder(parser)
     cli.add_skip_bad(parser)
-    cli.add_detector_argument(parser)
     parser.add_argument('--budget', type=cli.budget, metavar='N', help='evidence: how many false '
                         f'alarms an hour you allow (default: {limits.BUDGET:g})')
-    parser.add_argument('--cutoff', type=cli.checked(ThresholdRule.parse),
-                        metavar='HOW', help='paper: how to choose the threshold. youden: the '
-                        'largest true positive rate less false positive rate; closest: '
-                        'nearest to finding every fault without a false alarm; fpr=RATE: this '
-                        'share of the normal windows is below it (default: youden)')
-    parser.add_argument('--roc', type=cli.plot_file, metavar='FILE',
-                        help='draw the ROC; the name ends in .png, .pdf or .svg')
-    parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')
-    cli.add_detector_arguments(parser)
+    cli.add_unknown(parser)
+    cli.add_details(parser)
+    group = cli.for_researchers(parser)
+    cli.add_detector_argument(group)
+    group.add_argument('--cutoff', type=cli.checked(ThresholdRule.parse),
+                       metavar='HOW', help='paper: how to choose the threshold. youden: the '
+                       'largest true positive rate less false positive rate; closest: '
+                       'nearest to finding every fault without a false alarm; fpr=RATE: this '
+                       'share of the normal windows is below it (default: youden)')
+    group.add_argument('--roc', type=cli.plot_file, metavar='FILE',
+                       help='draw the ROC; the name ends in .png, .pdf or .svg')
+    group.add_argument('--csv', metavar='FILE', help='write score and label of every window')
+    cli.add_detector_arguments(group)
     return parser

@@ -10,7 +10,7 @@ import signal
 import sys
 from dataclasses import replace
 from types import FrameType
-from typing import Any, Callable, Iterable, List, Optional, Sequence, TypeVar
+from typing import Any, Callable, Iterable, List, NoReturn, Optional, Sequence, TypeVar
 
 import rosgraph
 
@@ -32,6 +32,14 @@ _UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
 _MOST_WINDOWS = 100_000
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser that says in one line what is wrong with the arguments."""
+
+    def error(self, message: str) -> NoReturn:
+        """End the program."""
+        self.exit(2, f'{self.prog}: error: {message} ({self.prog} --help says more)\n')
+
+
 def parser(program: str, about: Optional[str], epilog: str = '') -> argparse.ArgumentParser:
     """Return a parser without arguments yet.
 
@@ -40,7 +48,7 @@ def parser(program: str, about: Optional[str], epilog: str = '') -> argparse.Arg
         about: the docstring of its module: how it is started, a colon, and what it does.
         epilog: whose lines stay as they are.
     """
-    return argparse.ArgumentParser(
+    return _Parser(
         prog=program, description=(about or '').split(': ', 1)[1].strip(), epilog=epilog,
         formatter_class=argparse.RawDescriptionHelpFormatter)
 
@@ -234,7 +242,17 @@ page_file = ends_in('.html')
 """Argument type: the name of a page; no browser would open another one."""
 
 
-def add_detector_argument(parser: argparse.ArgumentParser) -> None:
+def add_details(parser: argparse._ActionsContainer) -> None:
+    """Add the option that prints more than needs to be known."""
+    parser.add_argument('--details', action='store_true', help='print all that is known')
+
+
+def for_researchers(parser: argparse.ArgumentParser) -> argparse._ArgumentGroup:
+    """Return the group of the options that a robot's user does not need."""
+    return parser.add_argument_group('for researchers')
+
+
+def add_detector_argument(parser: argparse._ActionsContainer) -> None:
     """Add the option that says what judges the windows."""
     parser.add_argument('--detector', choices=['evidence', 'paper'], default='evidence',
                         help='evidence: several pieces of evidence, each with its limit; paper: '
@@ -343,10 +361,16 @@ def read_recording(program: str, model: TrainedModel, part: BagPart) -> Recordin
     return recording
 
 
-def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say when abnormal windows are an alarm."""
+def add_unknown(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says what becomes of events that training never saw."""
+    parser.add_argument('--unknown', choices=sorted(_UNKNOWN), default='warn',
+                        help='events never seen in training: nothing, a suspicion, or an alarm at '
+                             'once (default: warn)')
+
+
+def add_detector_arguments(group: argparse._ActionsContainer) -> None:
+    """Add the options that say when abnormal windows are an alarm; see add_unknown()."""
     default = DetectorParameters()
-    group = parser.add_argument_group('from windows to an alarm')
     group.add_argument('--settle-time', type=seconds, default=default.settle_time, metavar='S',
                        help='no alarm in the first seconds of a recording '
                             f'(default: {default.settle_time / SECOND_NS:g})')
@@ -355,16 +379,13 @@ def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
                        f'(default: {default.alarm_windows})')
     group.add_argument('--alarm-of', type=_windows, default=default.alarm_of, metavar='N',
                        help=f'among the last N windows (default: {default.alarm_of})')
-    group.add_argument('--unknown', choices=sorted(_UNKNOWN), default='warn',
-                       help='events never seen in training: nothing, a suspicion, or an alarm at '
-                            'once (default: warn)')
     group.add_argument('--hold-time', type=seconds, default=default.hold_time, metavar='S',
                        help='seconds without an abnormal window after which the alarm ends '
                             f'(default: {default.hold_time / SECOND_NS:g})')
 
 
 def detector_parameters(arguments: argparse.Namespace) -> DetectorParameters:
-    """Return the parameters of the options that add_detector_arguments() added.
+    """Return the parameters of the options that add_detector_arguments() and add_unknown() added.
 
     Raises:
         ValueError: more windows are wanted for an alarm than are looked at.

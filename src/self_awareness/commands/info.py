@@ -4,7 +4,6 @@ from __future__ import annotations
 import argparse
 import os
 import shutil
-from collections import Counter
 from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness import (EventType, EvidenceModel, ModelFileError, PaperModel, ResultBag,
@@ -14,17 +13,13 @@ from self_awareness.judging import EVIDENCE
 from self_awareness.learning.age import age_of, logs_of
 from self_awareness.parts import BagPart, look
 from self_awareness.recordings import is_bag
-from self_awareness.reporting import (age_text, coverage_text, delay_bins, rates_text,
-                                      recordings_text, relations_text)
-from self_awareness.reporting.evidence_report import counts
+from self_awareness.reporting import (age_text, delay_bins, model_text, rates_text,
+                                      recordings_text, verdict)
 from self_awareness.reporting.file_summary import (describe_version, summarise_event_log,
                                                    summarise_results)
 from self_awareness.reporting.model_summary import summarise, tuning_lines
-from self_awareness.reporting.text import rounded
+from self_awareness.reporting.text import duration, number_of, rounded
 from self_awareness.stamps import moment, span
-
-_LIMITS_OF = {'held-out': 'of recordings that were not trained on',
-              'cross-fit': 'preliminary, of the training alone'}
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -58,7 +53,7 @@ def _info(arguments: argparse.Namespace) -> None:
     elif arguments.json:
         cli.print_values(summarise(model))
     else:
-        _print(summarise(model))
+        _print(model, arguments.model, arguments.details)
 
 
 def _info_of_age(arguments: argparse.Namespace) -> None:
@@ -68,7 +63,7 @@ def _info_of_age(arguments: argparse.Namespace) -> None:
     if arguments.json:
         cli.print_values(age_text.summarise(found))
     else:
-        cli.print_lines([*named.told, *age_text.lines(found)])
+        cli.print_lines([*named.told, *age_text.lines(found, arguments.details)])
     cli.say_skipped('info', named.bad)
 
 
@@ -124,7 +119,7 @@ def _info_of_log(arguments: argparse.Namespace, recordings: int) -> None:
     if arguments.json:
         cli.print_values(summary)
     else:
-        _print_log(summary)
+        _print_log(summary, arguments.details)
 
 
 def _info_of_results(arguments: argparse.Namespace) -> None:
@@ -135,29 +130,39 @@ def _info_of_results(arguments: argparse.Namespace) -> None:
         cli.print_values(summary)
         return
     print(f'result bag   {summary["size"] / 1e6:.1f} MB, {summary["messages"]} messages')
-    _print_version(summary['version'])
+    print(f'written by   {describe_version(summary["version"])}')
     print(f'results      {span(summary["start_ns"], summary["end_ns"])}')
 
 
-def _print_version(version: Dict[str, Any]) -> None:
-    print(f'written by   {describe_version(version)}')
+def _print(model: TrainedModel, path: str, details: bool) -> None:
+    cli.print_lines(verdict.lines(model))
+    if details:
+        cli.print_lines(model_text.lines(summarise(model)))
+    cli.print_lines(verdict.next_steps(model, path))
 
 
-def _print_log(summary: Dict[str, Any]) -> None:
-    print(f'event log    {summary["size"] / 1e6:.1f} MB')
-    _print_version(summary['version'])
-    print(f'recordings   {len(summary["recordings"])}, {summary["duration"]:.1f} s'
-          + (f', starts of the robot: {summary["starts"]}' if summary['starts'] else ''))
-    for number, recording in enumerate(summary['recordings'], 1):
+def _print_log(summary: Dict[str, Any], details: bool) -> None:
+    nodes = {kind['source'] for kind in summary['event_types']} - {''}
+    recordings = summary['recordings']
+    dropped = sum(recording['dropped'] for recording in recordings)
+    print(f'event log    {number_of(len(recordings), "recording")}, '
+          f'{duration(summary["duration"])}, nodes: {len(nodes) or "not known"}'
+          + (f', starts of the robot: {summary["starts"]}' if summary['starts'] else '')
+          + (f'; {dropped} messages were dropped' if dropped else ''))
+    if not details:
+        return
+    print(f'written by   {describe_version(summary["version"])}')
+    for number, recording in enumerate(recordings, 1):
         start = recording['robot_start_ns']
-        print(f'    #{number} {_recording(recording)}'
+        print(f'    #{number} {model_text.recording(recording)}'
               + ('' if start is None else f', robot started {moment(start)}')
               + (f', {recording["dropped"]} messages were dropped' if recording['dropped']
                  else ''))
-    encodings = [recording['encoding'] for recording in summary['recordings']]
+    encodings = [recording['encoding'] for recording in recordings]
     for index, encoding in enumerate(encodings):
         if encoding not in encodings[:index]:
-            _print_encoding(encoding)
+            cli.print_lines(model_text.encoding(encoding))
+    print(f'size         {summary["size"] / 1e6:.1f} MB')
     print(f'events       {summary["events"]}')
     print(f'event types  {len(summary["event_types"])}')
     print('     count  rate [Hz]')
@@ -165,139 +170,7 @@ def _print_log(summary: Dict[str, Any]) -> None:
         rate = '-' if kind['rate'] is None else rounded(kind['rate'], 3)
         print(f'  {kind["count"]:8d} {rate:>10}  {kind["source"] or "-"} {kind["scope"]} '
               f'{kind["type"]}')
-    print(f'graph        {_graph(summary)}')
-
-
-def _print(summary: Dict[str, Any]) -> None:
-    horizon = summary['horizon']
-    print(f'trained      {moment(summary["trained_ns"])}')
-    _print_version(summary['version'])
-    print(f'detector     {summary["detectors"]}')
-    print(f'recordings   {len(summary["recordings"])}, {summary["duration"]:.1f} s')
-    _print_recordings(summary['recordings'])
-    print(f'window       {summary["window"]:g} s')
-    print(f'bin size     {summary["bin_size"]:g} s, '
-          + ('no horizon' if horizon is None else f'horizon {horizon:g} s'))
-    _print_encoding(summary['encoding'])
-    sources = summary['sources']
-    print(f'sources      {len(sources) if sources else "not told apart"}')
-    for source in sources:
-        print(f'  {source}')
-    print(f'events       {summary["events"]}')
-    print(f'event types  {len(summary["event_types"])}{_rates(summary)}')
-    print('     count  rate [Hz]  usual delay [s]')
-    for kind in summary['event_types']:
-        print(f'  {_event_type(kind, summary["fewest_gaps"])}')
-    print(f'pairs        {summary["pairs"]} of {len(summary["event_types"]) ** 2} with delays')
-    print(f'graph        {_graph(summary)}')
-    if summary['evidence'] is not None:
-        _print_evidence(summary['evidence'], summary['fewest_gaps'])
-    if summary['detectors'] != EVIDENCE:
-        _print_calibration(summary['calibration'])
-
-
-def _print_encoding(encoding: Dict[str, Any]) -> None:
-    print('encoding')
-    for key, value in encoding.items():
-        if key == 'rename':
-            value = [f'{pattern} to {name}' for pattern, name in value]
-        if isinstance(value, dict):
-            value = [f'{datatype}: {field}' for datatype, field in value.items()]
-        print(f'  {key:<16}{", ".join(value) if isinstance(value, list) else value}'.rstrip())
-
-
-def _rates(summary: Dict[str, Any]) -> str:
-    if summary['lowest_rate'] is None:
-        return ''
-    return (f', {rounded(summary["lowest_rate"], 3)} to '
-            f'{rounded(summary["highest_rate"], 3)} Hz')
-
-
-def _event_type(kind: Dict[str, Any], fewest_gaps: int) -> str:
-    rate = '-' if kind['rate'] is None else rounded(kind['rate'], 3)
-    usual = f'{kind["usual_shortest"]:.3f} - {kind["usual_longest"]:.3f}' if kind['gaps'] else '-'
-    rare = '' if kind['judged'] else f'  (too rare to judge: fewer than {fewest_gaps} gaps)'
-    return (f'{kind["count"]:8d} {rate:>10}  {usual:<16} '
-            f'{kind["source"] or "-"} {kind["scope"]} {kind["type"]}{rare}')
-
-
-def _graph(summary: Dict[str, Any]) -> str:
-    graph = summary['graph']
-    if not graph:
-        return ('none: roots are told from victims by the training alone (record.launch writes '
-                'it down, or train --graph)')
-    publishers = {edge['publisher'] for edge in graph}
-    silent = sorted({edge['subscriber'] for edge in graph}
-                    - {kind['source'] for kind in summary['event_types']})
-    nodes = Counter(summary['hosts'].values())
-    del nodes['']  # who runs on several
-    hosts = ', '.join(f'{host} ({number})' for host, number in sorted(nodes.items()))
-    return (f'sources that somebody listens to: {len(publishers)}, connections: {len(graph)}'
-            + (f'; hosts and their nodes: {hosts}' if hosts else '')
-            + (f'; not watched, since they publish nothing: {", ".join(silent)}'
-               if silent else ''))
-
-
-def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
-    print(f'evidence     watches: {counts(evidence["tracks"])}')
-    if evidence['not_judged']:
-        print(f'  not judged: {"; ".join(evidence["not_judged"])}')
-    if evidence['left_out']:
-        print(f'  left out: {", ".join(evidence["left_out"])}: this version does not judge them')
-    for line in [*coverage_text.unheard_lines(evidence['unheard']),
-                 *coverage_text.optional_lines(evidence)]:
-        print(f'  {line}')
-    calibration = evidence['calibration']
-    if calibration is None:
-        print('limits       not calibrated (rosrun self_awareness calibrate)')
-        return
-    print(f'limits       {_LIMITS_OF.get(calibration["method"], calibration["method"])}, for '
-          f'{calibration["budget"]:g} false alarms an hour, calibrated '
-          f'{moment(calibration["calibrated_ns"])}')
-    print(f'  of {counts(calibration["judged_tracks"])}')
-    print(f'  {calibration["windows"]} windows; at most '
-          f'{_or_none(calibration["false_alarms_per_hour"])} false alarms an hour (95 %)')
-    for line in relations_text.lines(calibration['relations']):
-        print(f'  {line}')
-    print('  normal recordings')
-    _print_recordings(calibration['normal'])
-    for line in coverage_text.lines(calibration['coverage'], fewest_gaps):
-        print(f'  {line}')
-
-
-def _print_calibration(calibration: Optional[Dict[str, Any]]) -> None:
-    if calibration is None:
-        print('threshold    not calibrated (rosrun self_awareness calibrate --detector paper)')
-        return
-    print(f'threshold    {calibration["threshold"]!r} ({calibration["method"]}), calibrated '
-          f'{moment(calibration["calibrated_ns"])}')
-    print(f'  AUC {_or_none(calibration["auc"])}, TPR '
-          f'{_or_none(calibration["true_positive_rate"])} of {calibration["faulty_windows"]} '
-          f'abnormal windows, FPR {_or_none(calibration["false_positive_rate"])} of '
-          f'{calibration["normal_windows"]} normal windows')
-    print(f'  false alarms {_or_none(calibration["false_alarms_per_hour"])} an hour, after '
-          'persistence')
-    print('  normal recordings')
-    _print_recordings(calibration['normal'])
-    if calibration['faulty']:
-        print('  faulty recordings')
-        _print_recordings(calibration['faulty'])
-    if calibration['injected']:
-        print(f'  injected {", ".join(calibration["injected"])}')
-
-
-def _print_recordings(recordings: Sequence[Dict[str, Any]]) -> None:
-    cli.print_lines(f'    {_recording(recording)}' for recording in recordings)
-
-
-def _recording(recording: Dict[str, Any]) -> str:
-    return (f'{recording["bag"]}: {recording["duration"]:.1f} s, {recording["events"]} events, '
-            f'from {moment(recording["start_ns"])}'
-            + ('' if recording['robot'] is None else f', of {recording["robot"]}'))
-
-
-def _or_none(value: Optional[float]) -> str:
-    return 'none' if value is None else f'{value:.4g}'
+    print(f'graph        {model_text.graph(summary)}')
 
 
 def _print_pair(model: TrainedModel, first: int, second: int) -> None:
@@ -348,6 +221,7 @@ def _parser() -> argparse.ArgumentParser:
                              'which cannot be used')
     how = parser.add_mutually_exclusive_group()
     how.add_argument('--json', action='store_true', help='print all but the counts, for programs')
+    cli.add_details(how)
     how.add_argument('--tuning', action='store_true',
                      help='print the numbers of the method that the model was trained with')
     how.add_argument('--pair', nargs=2, metavar=('A', 'B'),

@@ -52,7 +52,7 @@ def _learn_more(arguments: argparse.Namespace) -> None:
     cli.stand_back()
     programs.train_and_calibrate(division, new, os.path.dirname(os.path.abspath(new)),
                                  arguments.budget or found.budget, lambda: False, arguments.model)
-    print('what changed, in the logs')
+    print('what changed, in the logs:')
     learned = list(dict.fromkeys(part.whole() for part in division.training))
     for line in diff_text.lines(compare(*with_recordings(arguments.model, 'the logs', learned))):
         print(f'  {line}')

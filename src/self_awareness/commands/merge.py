@@ -8,7 +8,7 @@ from self_awareness import TrainedModel
 from self_awareness.commands import cli
 from self_awareness.judging import PAPER
 from self_awareness.output_files import MODEL, check_outputs
-from self_awareness.reporting.training_report import print_summary
+from self_awareness.reporting import verdict
 from self_awareness.training import numbered_names
 from self_awareness.training.many_bags import DistinctRecordings
 from self_awareness.training.numbered_names import Renames
@@ -48,14 +48,12 @@ def _merge(arguments: argparse.Namespace) -> None:
     if merged.detectors != PAPER:
         merged.watch()
     merged.save(arguments.output)
-    print_summary(merged)
-    for line in told:
-        print(line)
+    cli.print_lines([*verdict.lines(merged), *told])
     if not same_tuning:
         print("the models' numbers of the method differ, as those of different versions do: the "
               'result has those of this version (rosrun self_awareness info --tuning)')
-    print(f'written: {arguments.output}, without limits and threshold; calibrate it again (rosrun '
-          'self_awareness calibrate)')
+    cli.print_lines([f'written: {arguments.output}, without limits and threshold',
+                     *verdict.next_steps(merged, arguments.output)])
 
 
 def _load(path: str, known: DistinctRecordings, renames: Renames) -> TrainedModel:

@@ -9,14 +9,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Iterator, List, Optional, Sequence
 
-from self_awareness import EVIDENCE_THRESHOLD, EvidenceModel, PaperModel, TrainedModel
+from self_awareness import EVIDENCE_THRESHOLD, EvidenceModel, PaperModel
 from self_awareness import accepted_file, alarms
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, load_model, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
                                          replacing, save_table)
 from self_awareness.parts import BagPart, look
-from self_awareness.recordings import RecordingEvents, in_words, unknown
+from self_awareness.recordings import in_words, unknown
 from self_awareness.reporting import coverage_text
 from self_awareness.reporting.plots import ScorePlot, save_scores
 from self_awareness.reporting.report import neighbours
@@ -27,19 +27,21 @@ from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import check_installed, save_report
 from self_awareness.reporting.report.section import section
 from self_awareness.reporting.report.timeline import timeline
-from self_awareness.reporting.text import cell
+from self_awareness.reporting.text import cell, duration, first_lines, number_of
 from self_awareness.results import check_apart, result_bag
 from self_awareness.stamps import SECOND_NS, span
 
 _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold', 'abnormal')
 _ROWS = 1 << 16  # of the table that are made at once
+_MOST_NAMED = 3  # of an incident
 _ALARM = 3  # exit code
 
 _EPILOG = """\
 Name a part of a recording as BAG@START-END, in s from its first message. Times that are printed
 count from there, too. A suspicion (level WARN) is something abnormal that is too little for an
 alarm, or an event that training never saw. All alarms and suspicions of one cause are an incident:
-a sentence, its longest alarm and whom that names; --json and --report have all of them.
+a sentence, its longest alarm and whom that names; --json and --report have all of them. Without an
+alarm, it is counted as a suspicion.
 
 The CSV has one row a window. Score and threshold are empty where there is none. abnormal is 1
 where the score lies below the threshold, also while settling. A name that a spreadsheet would
@@ -101,15 +103,18 @@ def _score(arguments: argparse.Namespace) -> int:
         print(f'{arguments.model}: {missing}')
     by = JudgedBy(trained, arguments.model, parameters, threshold, evidence, missing)
     judged: List[Judged] = []
+    found: List[Incident] = []
     with result_bag(arguments.result_bag, arguments.model, trained,
                     threshold is not None, coverage) as replay:
         for recording in named.each(lambda part: cli.read_recording('score', trained, part)):
             verdicts = judge(recording.stamps, recording.ids, recording.end,
                              recording.event_types, replay(recording), **recording.known)
             judged.append(Judged(by, recording, verdicts))
-            _print(judged[-1])
+            found += _print(judged[-1], arguments.details)
         if not judged:
             named.check()
+    if threshold is not None:
+        _print_sum(judged, found)
     if arguments.csv is not None:
         save_table(arguments.csv, _COLUMNS, _rows(judged, threshold))
     if arguments.json is not None:
@@ -131,56 +136,81 @@ def _open(report: str) -> None:
                  'open it there')
 
 
-def _print(judged: Judged) -> None:
-    recording, verdicts, threshold = judged.recording, judged.verdicts, judged.by.threshold
-    windows = len(verdicts.start)
+def _print(judged: Judged, details: bool) -> List[Incident]:
+    """Print what happened in a recording, a block for each incident; return the incidents."""
+    recording = judged.recording
+    found = incidents(judged, intervals(judged), 'incident')
     start, end = recording.part.span(recording.origin, recording.end)
-    line = (f'{recording.part}: {(end - start) / SECOND_NS:.1f} s, '
-            f'{len(recording.stamps)} events, {windows} windows')
-    if threshold is not None:
-        abnormal = int((verdicts.abnormal & ~verdicts.settling).sum())
-        line += (f', {abnormal} abnormal ({abnormal / windows:.1%}; settling left out), '
-                 f'alarms: {len(verdicts.alarms)}, suspicions: {len(verdicts.suspicions)}')
-    print(line)
+    print(f'{recording.part}: {duration((end - start) / SECOND_NS)}, '
+          + ('not judged' if judged.by.threshold is None else _counted(found)))
     if recording.steps_of_the_clock:
         print(f'  the clock was set {in_words(recording.steps_of_the_clock)}: the recording is '
               'cut there')
-    for incident in incidents(judged, intervals(judged), 'incident'):
-        cli.print_lines(_lines(judged, incident))
-    _print_unknown(recording, judged.by.trained)
+    if details:
+        _print_details(judged)
+    for incident in found:
+        cli.print_lines(_lines(judged, incident, details))
+    return found
 
 
-def _lines(judged: Judged, incident: Incident) -> Iterator[str]:
+def _counted(found: Sequence[Incident]) -> str:
+    suspicions = sum(each.level == SUSPICION for each in found)
+    counted = [number_of(number, what) for number, what in (
+        (len(found) - suspicions, 'incident'), (suspicions, 'suspicion')) if number]
+    return ', '.join(counted) or 'nothing abnormal'
+
+
+def _lines(judged: Judged, incident: Incident, details: bool) -> Iterator[str]:
     """Return what happened, the longest alarm of it, and whom that names."""
     place = place_of(judged, incident)
     yield f'  {incident.headline}' + (f' ({place})' if place else '')
     for further in incident.further:
         yield f'  {further}'
     main = incident.main
-    level = 'suspicion: ' if incident.level == SUSPICION else ''
     more = len(incident.intervals) - 1
     notes = ', '.join(([] if main.cleared else ['to the end of the recording'])
                       + ([f'and {more} more'] if more else []))
+    level = 'suspicion: ' if incident.level == SUSPICION else ''
     yield (f'    {level}{main.start:.1f} - {main.end:.1f} s{notes and f" ({notes})"}, '
-           f'{span(main.of.begin, main.of.end)}: {main.reached}, {main.evidence}')
+           f'{span(main.of.begin, main.of.end)}'
+           + (f': {main.reached}, {main.evidence}' if details else ''))
     if main.busy is not None and main.of.kind != 'busy machine':
         yield f'    {main.busy}'
-    for rank, suspect in enumerate(main.suspects, 1):
-        yield f'    {rank}. {suspect.event_type}: {suspect.why}'
-    for suspect in main.later:
-        yield f'    since {suspect.named:.1f} s {suspect.event_type}: {suspect.why}'
+    named = [f'    {rank}. {suspect.event_type}: {suspect.why}'
+             for rank, suspect in enumerate(main.suspects, 1)]
+    later = [f'    since {suspect.named:.1f} s {suspect.event_type}: {suspect.why}'
+             for suspect in main.later]
+    for lines in (named, later):
+        yield from lines if details else first_lines(lines, _MOST_NAMED, indent='    ')
 
 
-def _print_unknown(recording: RecordingEvents, trained: TrainedModel) -> None:
+def _print_details(judged: Judged) -> None:
+    recording, verdicts = judged.recording, judged.verdicts
+    windows = len(verdicts.start)
+    line = f'  {len(recording.stamps)} events, {windows} windows'
+    if judged.by.threshold is not None:
+        abnormal = int((verdicts.abnormal & ~verdicts.settling).sum())
+        line += (f', {abnormal} abnormal ({abnormal / windows:.1%}; settling left out), '
+                 f'alarms: {len(verdicts.alarms)}, suspicions: {len(verdicts.suspicions)}')
+    print(line)
     for said, found in zip(
             ('event types never seen in training',
              'modes never seen in training: they say nothing',
              'event types that nobody subscribed to in training: they are not judged'),
-            unknown(trained, recording)):
+            unknown(judged.by.trained, recording)):
         if found:
             print(f'  {said}:')
         for count, name in found:
             print(f'    {name}: {count}')
+
+
+def _print_sum(judged: Sequence[Judged], found: Sequence[Incident]) -> None:
+    """Print how many incidents all recordings show."""
+    seconds = 0.0
+    for each in judged:
+        start, end = each.recording.part.span(each.recording.origin, each.recording.end)
+        seconds += (end - start) / SECOND_NS
+    print(f'{number_of(len(judged), "recording")}, {duration(seconds)}: {_counted(found)}')
 
 
 def _save_json(path: str, judged: Sequence[Judged], missing: str, bad: Sequence[str]) -> None:
@@ -226,14 +256,10 @@ def _plot(judged: Judged) -> ScorePlot:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog='score', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = cli.parser('score', __doc__, _EPILOG)
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
                         help='a recording, or a folder of bags')
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
-    cli.add_detector_argument(parser)
-    parser.add_argument('--csv', metavar='FILE', help='write the score of every window')
     parser.add_argument('--json', metavar='FILE',
                         help='write alarms, suspicions and incidents, for programs')
     parser.add_argument('--plot', type=cli.plot_file, metavar='FILE',
@@ -248,5 +274,10 @@ def _parser() -> argparse.ArgumentParser:
                         help='write what the monitor would have published, with the times of the '
                              'recordings')
     cli.add_skip_bad(parser)
-    cli.add_detector_arguments(parser)
+    cli.add_unknown(parser)
+    cli.add_details(parser)
+    group = cli.for_researchers(parser)
+    cli.add_detector_argument(group)
+    group.add_argument('--csv', metavar='FILE', help='write the score of every window')
+    cli.add_detector_arguments(group)
     return parser

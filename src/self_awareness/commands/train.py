@@ -5,7 +5,7 @@ import argparse
 import os
 from contextlib import closing
 from dataclasses import replace
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 from self_awareness import (BagError, EncodingRules, TrainedModel, accepted_file, encoding_file,
                             progress)
@@ -17,8 +17,8 @@ from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.parts import BagPart, by_folder
-from self_awareness.reporting import coverage_text
-from self_awareness.reporting.training_report import print_summary
+from self_awareness.reporting import model_text, verdict
+from self_awareness.reporting.model_summary import summarise
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import live_graph, many_bags
 from self_awareness.training.many_bags import Counting, Trained
@@ -63,7 +63,8 @@ def _train(arguments: argparse.Namespace) -> None:
         parts = [replace(part, path=os.path.abspath(part.path),
                          more=tuple(map(os.path.abspath, part.more))) for part in parts]
     with closing(_workers(arguments, len(parts))) as workers:
-        trained = many_bags.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
+        trained = many_bags.train(parts, counting, workers, base, arguments.skip_bad,
+                                  _say(arguments.details))
         found = holes.find(_silences(trained))
         if found and arguments.leave_out_holes:
             parts = holes.without([each.part for each in trained.trained_on], found)
@@ -77,44 +78,48 @@ def _train(arguments: argparse.Namespace) -> None:
         model.hosts = graph.hosts_of_sources(model.encoding)
         model.unheard = graph.unheard(model.encoding)
         try:
-            limits = _limits(trained, workers)
+            _find_limits(trained, workers)
+        except TooLittleError as error:
+            cli.warn('train', f'no limits: {error}')
         except (BagError, ValueError) as error:  # the counts are not lost
             model.save(arguments.output)
             raise ValueError(f'{error}; {arguments.output} is written, without limits') from error
     accepted = accepted_file.of_either(arguments.add_to or arguments.output, arguments.output)
     model.save(arguments.output)
-    print_summary(model)
-    print(limits)
-    for line in coverage_text.lines(coverage_text.summarise(model.coverage()),
-                                    model.fewest_gaps):
-        print(f'  {line}')
-    for line in coverage_text.unheard_lines(coverage_text.unheard(model.unheard)):
-        print(f'  {line}')
-    for line in coverage_text.optional_lines(coverage_text.of_some_robots(model.robots)):
-        print(f'  {line}')
-    for line in trained.numbered:
-        print(line)
-    for line in accepted_file.keep_what_is_left(accepted, model, arguments.output):
-        print(line)
-    for line in (heads_and_tails.start_up_lines(
-            [(each.part, each.start_up) for each in trained.trained_on])
-            + heads_and_tails.lines(_silences(trained), '--start', '--end')):
-        print(line)
-    _say_holes(found, model, arguments.leave_out_holes)
+    cli.print_lines([*trained.numbered,
+                     *accepted_file.keep_what_is_left(accepted, model, arguments.output),
+                     *verdict.lines(model)])
+    if arguments.details:
+        cli.print_lines([
+            *model_text.lines(summarise(model)),
+            *heads_and_tails.start_up_lines([(each.part, each.start_up)
+                                             for each in trained.trained_on]),
+            *heads_and_tails.lines(_silences(trained), '--start', '--end')])
+    _say_holes(found, model, arguments)
     cli.say_skipped('train', named.bad + trained.bad)
-    print(f'written: {arguments.output}; next, find limits on recordings that it was not trained '
-          'on (rosrun self_awareness calibrate)')
+    cli.print_lines([f'written: {arguments.output}',
+                     *verdict.next_steps(model, arguments.output)])
+
+
+def _say(details: bool) -> Callable[[str], None]:
+    """Return what says how the training goes: if no details are wanted, only what is wrong."""
+    def say(line: str) -> None:
+        if details or ': warning: ' in line or line.startswith('skipped: '):
+            progress.say(line)
+    return say
 
 
 def _silences(trained: Trained) -> List[Tuple[BagPart, Silences]]:
     return [(each.part, each.silences) for each in trained.trained_on]
 
 
-def _say_holes(found: Sequence[Hole], model: TrainedModel, left_out: bool) -> None:
+def _say_holes(found: Sequence[Hole], model: TrainedModel, arguments: argparse.Namespace) -> None:
+    left_out = arguments.leave_out_holes
     coverage = [] if left_out else model.coverage()
-    for line in holes.lines(found, coverage):
+    deciding = holes.deciding(found, coverage)
+    for line in holes.lines(found if left_out or arguments.details else deciding, coverage):
         cli.warn('train', f'left out: {line}' if left_out else line)
-    if holes.deciding(found, coverage):
+    if deciding:
         cli.warn('train', 'if that was a fault, --leave-out-holes trains on what came before and '
                  'after it')
 
@@ -130,16 +135,15 @@ def _live_graph(base: Optional[TrainedModel]) -> RobotGraph:
     return graph
 
 
-def _limits(trained: Trained, workers: Workers) -> str:
-    """Give the model preliminary limits where there is enough to find them; say how."""
-    if trained.model.detectors == PAPER:
-        return 'limits       none: it was not trained for the evidence detector'
-    try:
-        found = many_bags.preliminary_limits(trained, workers)
-    except TooLittleError as error:
-        return f'limits       none: {error}'
-    return ('limits       preliminary: each half of the training was judged by the other '
-            f'({found.windows} windows)')
+def _find_limits(trained: Trained, workers: Workers) -> None:
+    """Give the model preliminary limits, unless it is for another detector.
+
+    Raises:
+        BagError: a recording cannot be read any more.
+        TooLittleError: the recordings are too short.
+    """
+    if trained.model.detectors != PAPER:
+        many_bags.preliminary_limits(trained, workers)
 
 
 def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Counting:
@@ -200,17 +204,6 @@ def _parser() -> argparse.ArgumentParser:
                         help='a recording of normal operation, or a folder of them; delays never '
                              'cross from one to the next')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
-    parser.add_argument('--detector', choices=(EVIDENCE, PAPER, BOTH),
-                        help='train for this detector; no other one can judge by the model '
-                             f'(default: {Counting.detector})')
-    parser.add_argument('--bin', type=cli.duration, metavar='S',
-                        help="size of the bins of the paper's delays in s (default: "
-                             f'{Counting.bin_size / SECOND_NS:g})')
-    parser.add_argument('--window', type=cli.window, metavar='S',
-                        help='length of the windows that are scored, in s (default: '
-                             f'{Counting.window / SECOND_NS:g})')
-    parser.add_argument('--horizon', type=cli.seconds, metavar='S',
-                        help='delays of this many s or more share one bin (default: no horizon)')
     parser.add_argument('--graph', action='store_true',
                         help='ask the master of the running robot who subscribes to what: it '
                              'tells the root of a fault from its victims. What record.launch '
@@ -235,6 +228,7 @@ def _parser() -> argparse.ArgumentParser:
                              'than in all other recordings. Only needed where train says that '
                              'such a silence delays finding a death')
     cli.add_skip_bad(parser)
+    cli.add_details(parser)
     where = parser.add_argument_group('many bags').add_mutually_exclusive_group()
     where.add_argument('--jobs', type=cli.count, metavar='N',
                        help='processes to work in (default: one for each core, and never more '
@@ -243,4 +237,16 @@ def _parser() -> argparse.ArgumentParser:
                        help='work on the cluster of this scheduler of dask.distributed (package '
                             'python3-distributed); its workers must have self_awareness, and find '
                             'the bags under the same names')
+    group = cli.for_researchers(parser)
+    group.add_argument('--detector', choices=(EVIDENCE, PAPER, BOTH),
+                       help='train for this detector; no other one can judge by the model '
+                            f'(default: {Counting.detector})')
+    group.add_argument('--bin', type=cli.duration, metavar='S',
+                       help="size of the bins of the paper's delays in s (default: "
+                            f'{Counting.bin_size / SECOND_NS:g})')
+    group.add_argument('--window', type=cli.window, metavar='S',
+                       help='length of the windows that are scored, in s (default: '
+                            f'{Counting.window / SECOND_NS:g})')
+    group.add_argument('--horizon', type=cli.seconds, metavar='S',
+                       help='delays of this many s or more share one bin (default: no horizon)')
     return parser

@@ -1,1 +1,1 @@
-"""Compares two models, or a model and a recording: what is new, gone or changed (docs/diff.md)."""
+"""Compares two models, or a model and a recording: what is new, gone, changed (docs/learn.md)."""

@@ -81,16 +81,11 @@ class Comparison:
 
 @dataclass(frozen=True)
 class _Measured:
-    """A quantity on one side: its value, that of each half, and the variances by chance alone."""
+    """A quantity on one side: its value, its variance by chance alone, and its halves' excess."""
 
     value: float
     variance: float
-    halves: Tuple[float, float]
-    variances: Tuple[float, float]
-
-    @property
-    def excess(self) -> float:
-        return chance.excess(self.halves, self.variances)
+    excess: float
 
 
 @dataclass(frozen=True)
@@ -178,8 +173,8 @@ def _measured(side: Side,
               measure: Callable[[EvidenceModel], Tuple[float, float]]) -> _Measured:
     """Measure value and variance of all counts of a side, and of its halves."""
     value, variance = measure(side.all)
-    (first, first_variance), (second, second_variance) = [measure(half) for half in side.halves]
-    return _Measured(value, variance, (first, second), (first_variance, second_variance))
+    halves, variances = zip(*map(measure, side.halves))
+    return _Measured(value, variance, chance.excess(halves, variances))
 
 
 def _shift(what: str, before: Side, after: Side, pair: Tuple[Kind, Kind],
@@ -220,12 +215,15 @@ def _related(before: Side, after: Side) -> Optional[List[Tuple[Kind, Kind]]]:
     known = before.relations if before.relations is not None else after.relations
     if known is None:
         return None
+
+    def median(pair: Tuple[Kind, Kind]) -> float:
+        return before.all.usual_delay(before.ids[pair[0]], before.ids[pair[1]], _MEDIAN)
+
     pairs = {pair for pair in known
              if all(_has_enough(side, pair) for side in (before, after))}
     # Of a question and its answer, both orders may be watched; the answer comes soon.
     return sorted(pair for pair in pairs
-                  if pair[::-1] not in pairs or _median(before, pair) <= _median(before,
-                                                                                 pair[::-1]))
+                  if pair[::-1] not in pairs or median(pair) <= median(pair[::-1]))
 
 
 def _has_enough(side: Side, pair: Tuple[Kind, Kind]) -> bool:
@@ -233,10 +231,6 @@ def _has_enough(side: Side, pair: Tuple[Kind, Kind]) -> bool:
         return False
     ids = side.ids[pair[0]], side.ids[pair[1]]
     return min(half.delay_count(*ids) for half in side.halves) >= FEWEST_OF_HALF
-
-
-def _median(side: Side, pair: Tuple[Kind, Kind]) -> float:
-    return side.all.usual_delay(side.ids[pair[0]], side.ids[pair[1]], _MEDIAN)
 
 
 def _missing_by_chance(here: Side, there: Side, kind: Kind, common: float) -> float:

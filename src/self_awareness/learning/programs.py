@@ -6,6 +6,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
+from itertools import takewhile
 from typing import Callable, Dict, Optional
 
 import roslib.packages
@@ -60,16 +61,20 @@ def train_and_calibrate(division: Division, model: str, folder: str, budget: flo
         counted = os.path.join(temporary, 'trained.model')
         base = [] if add_to is None else ['--add-to', add_to]
         named = {counted: model}
-        _run(interrupted, named, 'train', *base, *map(str, division.training), '-o', counted)
-        _run(interrupted, named, 'calibrate', '--model', counted,
+        # The verdict is that of calibrate, and what comes next is known to who calls.
+        _run('learned from ', interrupted, named,
+             'train', *base, *map(str, division.training), '-o', counted)
+        _run('written: ', interrupted, named, 'calibrate', '--model', counted,
              '--normal', *map(str, division.calibration), '--budget', f'{budget:g}',
              '--inject', 'crash:*', '-o', model)
 
 
-def _run(interrupted: Callable[[], bool], named: Dict[str, str], *command: str) -> None:
-    """Run a program; what it prints goes on to the console.
+def _run(until: str, interrupted: Callable[[], bool], named: Dict[str, str],
+         *command: str) -> None:
+    """Run a program; what it prints goes on to the console, up to a line.
 
     Args:
+        until: how that line begins.
         interrupted: whether to stop.
         named: what the command that is printed names in place of some of its words.
         command: the program and its arguments.
@@ -78,15 +83,17 @@ def _run(interrupted: Callable[[], bool], named: Dict[str, str], *command: str) 
         raise ProgramError(f'{command[0]}: interrupted')
     shown = ' '.join(shlex.quote(named.get(word, word)) for word in command)
     print(f'+ rosrun self_awareness {shown}', flush=True)
-    with subprocess.Popen([executable(command[0]), *command[1:]], stderr=subprocess.PIPE,
-                          universal_newlines=True) as process:
+    with subprocess.Popen([executable(command[0]), *command[1:]], stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, universal_newlines=True) as process:
         while True:
             try:
-                _, errors = process.communicate(timeout=_POLL_S)
+                said, errors = process.communicate(timeout=_POLL_S)
                 break
             except subprocess.TimeoutExpired:
                 if interrupted():
                     process.terminate()
+    for line in takewhile(lambda line: not line.startswith(until), said.splitlines()):
+        print(line, flush=True)
     sys.stderr.write(errors)
     if process.returncode:
         lines = errors.strip().splitlines() or [f'{command[0]}: exit code {process.returncode}']

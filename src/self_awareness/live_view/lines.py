@@ -94,14 +94,11 @@ def _row(name: str, rate: str, age: str, share: str, found: str, state: str, wid
     return f'{name:<{_NAME}} {rate:>11} {age:>7} {share:>5}{found}  {state}'
 
 
-def _state(incident: Any) -> str:
-    return 'unknown' if incident.unknown else 'over' if incident.over else 'open'
-
-
 def _incident(each: Any, width: int) -> Line:
     more = [*each.together, *each.victims, *each.others]
     besides = f'; and {", ".join(more[:2])}' + (' ...' if len(more) > 2 else '') if more else ''
-    text = (f'{_state(each)}  {each.component or "nobody"} {each.kind}, '
+    state = 'unknown' if each.unknown else 'over' if each.over else 'open'
+    text = (f'{state}  {each.component or "nobody"} {each.kind}, '
             f'raised {each.alarms} times{besides}  ({each.id})')
     return 'faint' if each.over else 'ERROR', cut(f'  {text}', width)
 

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import rospy
@@ -14,7 +14,6 @@ from self_awareness.recovery.node_process import (NodeProcess, NotItsProcess, li
                                                   process_of)
 from self_awareness.recovery.rules import Call, Step
 from self_awareness.recovery.xml_rpc import NoAnswer
-from self_awareness.srv import Mute
 
 _SERVICE_S = 10.0
 _OF_ROS = {'/rosout'}
@@ -24,21 +23,6 @@ _ENDED = 'has ended already; roslaunch starts it again'
 
 class ActionError(Exception):
     """A step could not be done; the message says why."""
-
-
-@dataclass(frozen=True)
-class _Found:
-    """A node that runs.
-
-    Args:
-        address: of its slave API.
-        process: itself; None: on another machine.
-        hangs: it does not answer.
-    """
-
-    address: str
-    process: Optional[NodeProcess]
-    hangs: bool
 
 
 class Actions:
@@ -66,7 +50,7 @@ class Actions:
 
     def look(self) -> None:
         """Ask the nodes which processes they are, and remember it; it may take a while."""
-        launchers: List[Launchers] = []  # asked only if it is needed, then once
+        launchers = lru_cache(maxsize=None)(self._calls.launchers)  # asked only if needed, once
         for node in self._nodes:
             try:
                 self._look_at(node, self._calls.address(node), launchers)
@@ -149,14 +133,6 @@ class Actions:
                               else f'{service} does not answer within {_SERVICE_S:g} s')
         return answers[0]
 
-    def mute(self, monitor: str, node: str, seconds: float) -> str:
-        """Tell a monitor that a node is stopped on purpose; return why not, or nothing."""
-        try:
-            answer = self.ask(f'{monitor}/mute', Mute, component=node, duration=seconds)
-        except ActionError as error:
-            return str(error)
-        return '' if answer.success else str(answer.message)
-
     def _check(self, nodes: Sequence[str]) -> None:
         everybody, own = self._calls.robot()
         for node in nodes:
@@ -176,12 +152,12 @@ class Actions:
         found = self._find(node)
         if found is None:
             return _ENDED
-        process = found.process
-        if process is not None and found.hangs:
+        address, process, hangs = found
+        if process is not None and hangs:
             return f'{process.end(self._grace, self._check_hold)}, since it hangs'
         self._check_hold()  # to find it may have taken a while
         try:
-            self._calls.shut_down(node, found.address, 'stopped by the recovery')
+            self._calls.shut_down(node, address, 'stopped by the recovery')
         except NoAnswer as error:
             if process is None:
                 raise ActionError(f'{node} was asked to end, on another machine, and did not '
@@ -197,12 +173,15 @@ class Actions:
         found = self._find(node)
         if found is None:
             return f'{node} {_ENDED}'
-        where = ('on another machine' if found.process is None
-                 else f'process {found.process.pid}')
-        return f'{node} {"hangs, and is" if found.hangs else "is"} {where}'
+        _, process, hangs = found
+        where = 'on another machine' if process is None else f'process {process.pid}'
+        return f'{node} {"hangs, and is" if hangs else "is"} {where}'
 
-    def _find(self, node: str) -> Optional[_Found]:
+    def _find(self, node: str) -> Optional[Tuple[str, Optional[NodeProcess], bool]]:
         """Return what a node is now; None: it was known, and has ended.
+
+        Returns:
+            address of its slave API; its process, None: on another machine; whether it hangs.
 
         Raises:
             NoAnswer: the master does not know it, or does not answer.
@@ -217,19 +196,19 @@ class Actions:
                 return None
             raise
         try:
-            return _Found(address, self._look_at(node, address), False)
+            return address, self._look_at(node, address), False
         except NoAnswer:
             process = self._hanging(node, address)
-            return _Found(address, process, True) if process is not None else None
+            return None if process is None else (address, process, True)
 
-    def _look_at(self, node: str, address: str, launchers: Optional[List[Launchers]] = None
-                 ) -> Optional[NodeProcess]:
+    def _look_at(self, node: str, address: str,
+                 launchers: Optional[Callable[[], Launchers]] = None) -> Optional[NodeProcess]:
         """Return the process of a node that is well, and remember it; None: it is elsewhere.
 
         Args:
             node, address: its own.
-            launchers: who starts nodes, if that is known already; it is added if it is asked for.
-                None: to be asked for in any case; else not again for a process that is known.
+            launchers: returns who starts nodes, which is not asked for a process that is known.
+                None: to be asked for in any case.
 
         Raises:
             NoAnswer: it does not answer.
@@ -241,7 +220,7 @@ class Actions:
             with self._lock:
                 known = self._known.get(node)
             if launchers is None or process is None or known is None or known[0] != process:
-                self._check_launched(node, process, launchers)
+                self._check_launched(node, process, launchers or self._calls.launchers)
         except NotItsProcess as error:
             with self._lock:
                 self._known.pop(node, None)
@@ -254,20 +233,18 @@ class Actions:
         return process
 
     def _check_launched(self, node: str, process: Optional[NodeProcess],
-                        launchers: Optional[List[Launchers]] = None) -> None:
+                        launchers: Callable[[], Launchers]) -> None:
         """Look whether a node would be started again, and its end does no further harm.
 
         Raises:
             NotItsProcess: not so.
         """
-        launchers = [] if launchers is None else launchers
-        if not launchers:
-            try:
-                launchers.append(self._calls.launchers())
-            except NoAnswer as error:
-                raise NotItsProcess(f'{node} may stay dead: who has started it is not known '
-                                    f'({error})') from error
-        why_not = launchers[0].why_not(node, None if process is None else line_of(process.pid))
+        try:
+            started = launchers()
+        except NoAnswer as error:
+            raise NotItsProcess(f'{node} may stay dead: who has started it is not known '
+                                f'({error})') from error
+        why_not = started.why_not(node, None if process is None else line_of(process.pid))
         if why_not:
             raise NotItsProcess(why_not)
 
@@ -286,5 +263,5 @@ class Actions:
                                 'process is not known')
         if not process.runs():
             return None
-        self._check_launched(node, process)
+        self._check_launched(node, process, self._calls.launchers)
         return process

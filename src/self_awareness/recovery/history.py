@@ -59,20 +59,32 @@ class Action:
         return values
 
 
-@dataclass
-class History:
-    """The last actions, and until when there may be no further ones.
+@dataclass(frozen=True)
+class Hold:
+    """Nothing is done for a while.
 
     Args:
-        actions: in the order in which they were begun.
-        held_until: [ns since 1970]; 0: not at all.
-        held_until_steady: the same by the steady clock of this boot [ns]; 0: it was set in
-            another boot.
+        until: when [ns since 1970]; 0: it is done.
+        steady: the same by the steady clock of this boot [ns]; 0: it was set in another boot.
+        by: who wants it, in words, which is not kept.
+    """
+
+    until: int = 0
+    steady: int = 0
+    by: str = field(default='', compare=False)
+
+    def left(self, steady: int, wall: int) -> int:
+        """Return for how long from now on [ns], 0 or more; see History.ages()."""
+        return max(0, self.steady - steady if self.steady else self.until - wall)
+
+
+@dataclass
+class History:
+    """The last actions, in the order in which they were begun, and until when there are no more.
     """
 
     actions: List[Action] = field(default_factory=list)
-    held_until: int = 0
-    held_until_steady: int = 0
+    hold: Hold = Hold()
 
     def begin(self, action: Action) -> None:
         """Add an action."""
@@ -92,18 +104,15 @@ class History:
         return [steady - each.steady if 0 < each.steady <= steady
                 else max(0, wall - each.begin) for each in self.actions]
 
-    def hold_left(self, steady: int, wall: int) -> int:
-        """Return how long nothing may be done from now on [ns], 0 or more; see ages()."""
-        return max(0, self.held_until_steady - steady if self.held_until_steady
-                   else self.held_until - wall)
-
     def save(self, path: str) -> None:
         """Write the file, whole or not at all; its folder is made.
 
         Raises:
             OSError: it cannot be written.
         """
-        values = {key: value for key, value in asdict(self).items() if value}
+        values = {'actions': [asdict(each) for each in self.actions],
+                  'held_until': self.hold.until, 'held_until_steady': self.hold.steady}
+        values = {key: value for key, value in values.items() if value}
         if values:
             values['boot'] = _boot()
         os.makedirs(os.path.dirname(path), exist_ok=True)
@@ -124,10 +133,11 @@ def load(path: str) -> History:
         return History()
     with Section(yaml_file.load(path), path) as section:
         read = History([_action(each) for each in section.sections('actions', ())][-MOST:],
-                       _stamp(section, 'held_until', 0), _stamp(section, 'held_until_steady', 0))
+                       Hold(_stamp(section, 'held_until', 0),
+                            _stamp(section, 'held_until_steady', 0)))
         same_boot = section.text('boot', '.*', '') == _boot() != ''
     if not same_boot:
-        read.held_until_steady = 0
+        read.hold = replace(read.hold, steady=0)
         read.actions = [replace(each, steady=0) for each in read.actions]
     return read
 

@@ -1,9 +1,8 @@
 """Which step of which rule is due, and when: knows neither ROS nor the clock."""
 from __future__ import annotations
 
-from collections import deque
 from dataclasses import dataclass
-from typing import Deque, Dict, Iterable, List, Optional, Sequence
+from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
 from self_awareness.recovery.rules import Rule, Rules, Step, Stop
 
@@ -52,52 +51,22 @@ class Order:
 
 
 @dataclass
-class _Climb:
+class Climb:
     """How far a rule is with what it mends.
 
     Args:
-        next_at: when a step may come [s].
+        rule: itself.
+        next_at: when a step may come, if the fault stands then [s].
         tried: steps so far.
         gone_since: when the fault was gone; None: it is there.
         gave_up: why nothing more will be done; empty: more will.
     """
 
+    rule: Rule
     next_at: float
     tried: int = 0
     gone_since: Optional[float] = None
     gave_up: str = ''
-
-
-@dataclass(frozen=True)
-class Standing:
-    """How a rule is that has something to mend.
-
-    Args:
-        rule: itself.
-        tried: steps so far.
-        gave_up: why nothing more will be done; empty: more will.
-        due_in: time to the next step, if the fault stands then [s].
-    """
-
-    rule: Rule
-    tried: int
-    gave_up: str
-    due_in: float
-
-
-class _Hour:
-    """The times of the steps of the last hour [s]."""
-
-    def __init__(self) -> None:
-        self._times: Deque[float] = deque()
-
-    def add(self, at: float) -> None:
-        self._times.append(at)
-
-    def count(self, now: float) -> int:
-        while self._times and self._times[0] <= now - HOUR_S:
-            self._times.popleft()
-        return len(self._times)
 
 
 class Ladder:
@@ -116,9 +85,9 @@ class Ladder:
     def __init__(self, rules: Rules) -> None:
         self._rules = rules
         self._healing = max(rules.delay, SHORTEST_HEALING_S)
-        self._climbs: Dict[Rule, _Climb] = {}
-        self._steps_of = {rule: _Hour() for rule in rules.rules}
-        self._steps_of_all = _Hour()
+        self._climbs: Dict[Rule, Climb] = {}
+        # Of the steps of the last hour, when they were done [s], and for which rules they count.
+        self._steps: List[Tuple[float, Sequence[Rule]]] = []
         self._busy: Optional[Order] = None
         self._restarting: Dict[str, float] = {}  # node that a step has stopped: until when
         self._held_until = float('-inf')
@@ -130,10 +99,8 @@ class Ladder:
             component: of the rule that did it.
             at: when [s], at most now.
         """
-        self._steps_of_all.add(at)
-        for rule, steps in self._steps_of.items():
-            if rule.component == component:
-                steps.add(at)
+        self._steps.append((at, [rule for rule in self._rules.rules
+                                 if rule.component == component]))
 
     def hold(self, until: float) -> None:
         """Order nothing before a time [s]; one in the past ends the hold."""
@@ -178,10 +145,9 @@ class Ladder:
                 each.next_at = max(each.next_at, waits_until)
         self._note_restarts(now, order)
 
-    def standings(self, now: float) -> List[Standing]:
+    def climbs(self) -> List[Climb]:
         """Return how the rules are that have something to mend."""
-        return [Standing(rule, climb.tried, climb.gave_up, max(0.0, climb.next_at - now))
-                for rule, climb in self._climbs.items()]
+        return list(self._climbs.values())
 
     def _look(self, now: float, rule: Rule, faults: Sequence[Fault]) -> None:
         """Take in whether there is something to mend for a rule."""
@@ -190,7 +156,7 @@ class Ladder:
             # Who is silent because the step of another rule has stopped it is no new fault.
             if _fault_of(rule, faults) and self._restarting.get(rule.component, now) <= now:
                 # A step of another rule for the same component has its time, too.
-                self._climbs[rule] = _Climb(max([now + self._rules.delay, *(
+                self._climbs[rule] = Climb(rule, max([now + self._rules.delay, *(
                     each.next_at for other, each in self._climbs.items()
                     if other.component == rule.component)]))
         elif any(fault.component == rule.component for fault in faults):
@@ -212,20 +178,20 @@ class Ladder:
 
     def _limit_of(self, now: float, rule: Rule) -> str:
         """Return why a rule may do nothing more; empty: it may."""
-        for steps, limit, whose in ((self._steps_of[rule], self._rules.limit, ''),
-                                    (self._steps_of_all, self._rules.limit_of_all,
-                                     ' of all rules')):
-            number = steps.count(now)
+        self._steps = [each for each in self._steps if each[0] > now - HOUR_S]
+        own = sum(rule in rules for _, rules in self._steps)
+        for number, limit, whose in ((own, self._rules.limit, ''),
+                                     (len(self._steps), self._rules.limit_of_all,
+                                      ' of all rules')):
             if number >= limit:
                 return f'{number} actions{whose} in an hour, which is the limit'
         return ''
 
-    def _order(self, now: float, rule: Rule, climb: _Climb, fault: Fault) -> Order:
+    def _order(self, now: float, rule: Rule, climb: Climb, fault: Fault) -> Order:
         at = min(climb.tried, len(rule.steps) - 1)
         step = rule.steps[at]
         climb.tried += 1
-        self._steps_of[rule].add(now)
-        self._steps_of_all.add(now)
+        self._steps.append((now, [rule]))
         self._busy = Order(rule, at + 1, step, fault)
         self._note_restarts(now, self._busy)
         return self._busy

@@ -4,7 +4,6 @@ from __future__ import annotations
 import threading
 import time
 import traceback
-from dataclasses import dataclass
 from typing import Dict, Optional, Set, Tuple
 
 import rospy
@@ -14,12 +13,13 @@ from self_awareness import printable
 from self_awareness.msg import Incidents, RecoveryAction, RecoveryActions, SelfAwareness
 from self_awareness.recovery import history, words
 from self_awareness.recovery.actions import ActionError, Actions
+from self_awareness.recovery.history import Hold
 from self_awareness.recovery.ladder import HOUR_S, Ladder, Order
 from self_awareness.recovery.node_calls import NodeCalls
 from self_awareness.recovery.rules import Rules
 from self_awareness.recovery.watch import Watch
 from self_awareness.recovery.xml_rpc import NoAnswer
-from self_awareness.srv import Maintenance, MaintenanceRequest, MaintenanceResponse
+from self_awareness.srv import Maintenance, MaintenanceRequest, MaintenanceResponse, Mute
 from self_awareness.stamps import SECOND_NS, nanoseconds, to_the_second
 from self_awareness.status_names import status_name
 
@@ -54,8 +54,8 @@ class Recovery:
         self._watch = Watch()  # Guarded by _lock.
         self._listeners: Optional[Dict[str, Set[str]]] = None  # Guarded by _lock.
         self._ladder = Ladder(rules)  # Guarded by _lock.
-        self._hold: Optional[_Hold] = None  # as told, and not kept yet. Guarded by _lock.
-        self._held = _Hold(0, 0, '')  # Guarded by _lock.
+        self._hold: Optional[Hold] = None  # as told, and not kept yet. Guarded by _lock.
+        self._held = Hold()  # Guarded by _lock.
         self._done: Optional[Tuple[bool, str]] = None  # Guarded by _lock.
         self._calls = NodeCalls(rospy.get_name())
         self._actions = Actions(self._calls, rules.nodes, rules.grace, self._why_held)
@@ -95,7 +95,7 @@ class Recovery:
             if self._path:  # else it is kept when it is known where
                 hold, self._hold = self._hold, None
         if hold is not None:
-            self._history.held_until, self._history.held_until_steady = hold.until, hold.steady
+            self._history.hold = hold
             self._keep()
         if done is not None:
             self._end(*done)
@@ -133,13 +133,11 @@ class Recovery:
 
     def _do(self, order: Order) -> None:
         try:
+            success = True
             if self._rules.dry_run:
-                success = True
-                result = ('nothing, since this is a dry run: '
-                          + self._actions.would_do(order.step))
+                result = f'nothing, since this is a dry run: {self._actions.would_do(order.step)}'
             else:
-                success, result = True, self._actions.do(order.step, order.rule.component,
-                                                         self._mute)
+                result = self._actions.do(order.step, order.rule.component, self._mute)
         except ActionError as error:
             success, result = False, str(error)
         except Exception as error:  # it must not leave the step under way for ever
@@ -150,7 +148,12 @@ class Recovery:
 
     def _mute(self, node: str) -> None:
         """Let the monitor not tell of a node that is stopped for the sake of another one."""
-        why_not = self._actions.mute(self._monitor, node, self._rules.wait)
+        try:
+            answer = self._actions.ask(f'{self._monitor}/mute', Mute, component=node,
+                                       duration=self._rules.wait)
+            why_not = '' if answer.success else str(answer.message)
+        except ActionError as error:
+            why_not = str(error)
         if why_not:
             rospy.logwarn('%s will be told as a fault while it is started again: %s', node,
                           why_not)
@@ -179,9 +182,10 @@ class Recovery:
         with self._lock:
             blind = self._watch.why_blind(now) or (
                 '' if self._path else 'the master does not say where the monitor keeps its files')
-            said = words.status(len({rule.component for rule in self._rules.rules}),
-                                self._ladder.standings(now), self._history.actions, blind,
-                                self._shown_hold())
+            until = to_the_second(self._held.until)
+            said = words.status(now, len({rule.component for rule in self._rules.rules}),
+                                self._ladder.climbs(), self._history.actions, blind,
+                                f'until {until}{self._held.by}' if self._is_held() else '')
         if said[0] == self._said[0] and now - self._said_at < _HEARTBEAT_S:
             return
         if said[0] == words.ERROR != self._said[0]:
@@ -251,8 +255,8 @@ class Recovery:
             return MaintenanceResponse(False, f'duration: {request.duration:g}; it must be from 1 '
                                        f'to {LONGEST_HOLD_S:g} s, or 0 to go on')
         by = printable(request._connection_header.get('callerid', 'nobody'))[:_LONGEST_NAME]
-        hold = _Hold(time.time_ns() + nanoseconds(request.duration),
-                     time.monotonic_ns() + nanoseconds(request.duration), f', by {by}')
+        hold = Hold(time.time_ns() + nanoseconds(request.duration),
+                    time.monotonic_ns() + nanoseconds(request.duration), f', by {by}')
         with self._lock:
             self._held = self._hold = hold
             self._ladder.hold(hold.steady / SECOND_NS)
@@ -274,10 +278,6 @@ class Recovery:
     def _is_held(self) -> bool:
         return time.monotonic_ns() < self._held.steady
 
-    def _shown_hold(self) -> str:
-        """Return until when nothing is done, and who wanted it; empty: it is not held."""
-        return f'until {to_the_second(self._held.until)}{self._held.by}' if self._is_held() else ''
-
     def _restore(self, steady: int, wall: int) -> None:
         """Let the ladder know of the hour before the start, and of the hold.
 
@@ -285,26 +285,11 @@ class Recovery:
             steady, wall: what the clocks say now [ns].
         """
         ages = self._history.ages(steady, wall)
-        left = min(self._history.hold_left(steady, wall), nanoseconds(LONGEST_HOLD_S))
+        left = min(self._history.hold.left(steady, wall), nanoseconds(LONGEST_HOLD_S))
         with self._lock:
             for age, action in sorted(zip(ages, self._history.actions), key=lambda pair: -pair[0]):
                 if age < HOUR_S * SECOND_NS and (self._rules.dry_run or not action.dry_run):
                     self._ladder.restore(action.component, (steady - age) / SECOND_NS)
             if left > 0 and self._hold is None:  # what is told after the start counts
-                self._held = _Hold(wall + left, steady + left, '')
+                self._held = Hold(wall + left, steady + left)
                 self._ladder.hold(self._held.steady / SECOND_NS)
-
-
-@dataclass(frozen=True)
-class _Hold:
-    """Nothing is done for a while.
-
-    Args:
-        until: when [ns since 1970].
-        steady: the same by the steady clock [ns].
-        by: who wants it, in words.
-    """
-
-    until: int
-    steady: int
-    by: str

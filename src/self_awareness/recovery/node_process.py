@@ -5,6 +5,7 @@ remembered with the time at which the process was started: process ids are given
 """
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import signal
@@ -26,10 +27,6 @@ class NotItsProcess(ValueError):
     """A process is not that of the node, or must not be ended; the message says why."""
 
 
-def _nothing() -> None:
-    pass
-
-
 @dataclass(frozen=True)
 class NodeProcess:
     """A process, told from others that had or will have its id.
@@ -48,19 +45,7 @@ class NodeProcess:
         return found is not None and int(found[_START]) == self.start and found[_STATE] not in (
             'Z', 'X')
 
-    def signal(self, number: int) -> None:
-        """Send it a signal, if it has not ended.
-
-        Raises:
-            OSError: it may not be sent one.
-        """
-        if self.runs():
-            try:
-                os.kill(self.pid, number)
-            except ProcessLookupError:
-                pass
-
-    def ends_within(self, seconds: float, check: Callable[[], None] = _nothing) -> bool:
+    def ends_within(self, seconds: float, check: Callable[[], None]) -> bool:
         """Wait for its end; return whether it came in time.
 
         Args:
@@ -75,7 +60,7 @@ class NodeProcess:
             time.sleep(_POLL_S)
         return True
 
-    def end(self, grace: float, check: Callable[[], None] = _nothing) -> str:
+    def end(self, grace: float, check: Callable[[], None] = lambda: None) -> str:
         """End it by SIGTERM, and by SIGKILL if it has not ended after the grace [s].
 
         Args:
@@ -92,7 +77,9 @@ class NodeProcess:
         for number, name, within in ((signal.SIGTERM, 'SIGTERM', grace),
                                      (signal.SIGKILL, 'SIGKILL', _KILLED_WITHIN_S)):
             check()
-            self.signal(number)
+            if self.runs():
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(self.pid, number)
             if self.ends_within(within, check):
                 return f'ended by {name}'
         raise OSError(f'process {self.pid} does not even end by SIGKILL')
@@ -116,7 +103,8 @@ def process_of(node: str, pid: int) -> NodeProcess:
     if f'__name:={node.rsplit("/", 1)[-1]}' not in words:
         raise NotItsProcess(f'{node} says that it is process {pid}, which was not started with '
                             'its name (__name:=)')
-    if not any(_is_roslaunch(each) for each in line_of(pid) - {pid}):
+    if not any(_LAUNCHER.fullmatch(word) for each in line_of(pid) - {pid}
+               for word in _command_line(each)[:2]):
         raise NotItsProcess(f'{node} was not started by roslaunch: it would stay dead')
     return NodeProcess(pid, int(found[_START]))
 
@@ -145,10 +133,6 @@ def line_of(pid: int) -> Set[int]:
         found = _stat(pid)
         pid = 0 if found is None else int(found[_PARENT])
     return line
-
-
-def _is_roslaunch(pid: int) -> bool:
-    return any(_LAUNCHER.fullmatch(word) for word in _command_line(pid)[:2])
 
 
 def _command_line(pid: int) -> Sequence[str]:

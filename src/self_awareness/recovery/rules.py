@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from dataclasses import dataclass
-from typing import List, Mapping, Set, Tuple, Union
+from typing import Mapping, Tuple, Union
 
 from self_awareness import yaml_file
 from self_awareness.recovery.history import MOST
@@ -127,7 +128,11 @@ def load(path: str, monitor: str, recovery: str) -> Rules:
         if len(found) > MOST_RULES:
             section.fail('rules', f'{len(found)} of them; at most {MOST_RULES} are allowed: leave '
                          'the least important ones to people')
-        _check_ambiguous(section, found)
+        taken = Counter((rule.component, kind) for rule in found for kind in rule.kinds)
+        for (component, kind), number in taken.items():
+            if number > 1:
+                section.fail('rules', f'two rules for {component} {kind}; give their steps in one '
+                             'rule')
     return Rules(tuple(found), float(delay), float(wait), float(grace), limit, limit_of_all,
                  dry_run)
 
@@ -161,7 +166,11 @@ def _step(section: Section, untouchable: Mapping[str, str]) -> Step:
         if ('call' in section) == ('stop' in section):
             section.fail('call', 'a step either calls a service or stops nodes: give call or stop')
         if 'call' in section:
-            return Call(_service(section, untouchable))
+            service = _name(section, 'call', section.text('call'))
+            for node, why in untouchable.items():
+                if service.startswith(f'{node}/'):
+                    section.fail('call', f'{service} may not be called: {why}; remove it')
+            return Call(service)
         nodes = section.texts('stop')
         for node in nodes:
             _name(section, 'stop', node)
@@ -175,27 +184,9 @@ def _step(section: Section, untouchable: Mapping[str, str]) -> Step:
         return Stop(tuple(nodes))
 
 
-def _service(section: Section, untouchable: Mapping[str, str]) -> str:
-    service = _name(section, 'call', section.text('call'))
-    for node, why in untouchable.items():
-        if service.startswith(f'{node}/'):
-            section.fail('call', f'{service} may not be called: {why}; remove it')
-    return service
-
-
 def _name(section: Section, key: str, name: str) -> str:
     if '*' in name or '(' in name:
         section.fail(key, f'{shown(name)}: patterns are not allowed; give each full name')
     if not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
         section.fail(key, f'{shown(name)} is no full name; it begins with /, as /player')
     return name
-
-
-def _check_ambiguous(section: Section, rules: List[Rule]) -> None:
-    taken: Set[Tuple[str, str]] = set()
-    for rule in rules:
-        for kind in rule.kinds:
-            if (rule.component, kind) in taken:
-                section.fail('rules', f'two rules for {rule.component} {kind}; give their steps '
-                             'in one rule')
-            taken.add((rule.component, kind))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Set
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Set, Tuple
 
 from self_awareness.recovery.ladder import Fault
 from self_awareness.recovery.rules import BLAME_NOBODY
@@ -41,19 +41,6 @@ class _Named:
     later: bool
 
 
-@dataclass(frozen=True)
-class _Silence:
-    """An event type of a component has died, and did not come again.
-
-    Args:
-        stamp: of the first window that names it [ns].
-        since: when that was [s].
-    """
-
-    stamp: int
-    since: float
-
-
 class Watch:
     """What a monitor has said last; times are steady [s].
 
@@ -66,7 +53,9 @@ class Watch:
         self._heard_at = float('-inf')
         self._status: Any = None
         self._named: Dict[str, _Named] = {}
-        self._silences: Dict[str, _Silence] = {}  # by component
+        # By component, of an event type that has died, and did not come again: the stamp of the
+        # first window that names it [ns], and when that was [s].
+        self._silences: Dict[str, Tuple[int, float]] = {}
 
     @property
     def heard(self) -> bool:
@@ -163,11 +152,11 @@ class Watch:
         silent = [each.silence for each in died if not math.isnan(each.silence)]
         stamp = self._status.header.stamp.to_nsec()
         before = self._silences.get(name)
-        if silent and (before is None or stamp - nanoseconds(max(silent)) > before.stamp):
-            self._silences[name] = _Silence(stamp, now)
+        if silent and (before is None or stamp - nanoseconds(max(silent)) > before[0]):
+            self._silences[name] = stamp, now
         if not silent:
             return named
-        since = self._silences[name].since
+        since = self._silences[name][1]
         return since if len(silent) == len(died) else min(since, named)
 
     def _incident(self) -> Any:
@@ -176,18 +165,12 @@ class Watch:
                      if not each.over and self._status.alarm in (each.id, each.last)), None)
 
     def _fault(self, incident: int, component: str, of_alarm: str, stands: bool) -> Fault:
-        kind = self._kind(component, of_alarm)
+        """Return what is wrong with a component now, which may be another thing than at first."""
         named = self._named.get(component)
+        kind = of_alarm if named is None or of_alarm in named.kinds else named.kinds[0]
         if named is None or kind not in _DIED:
             return Fault(incident, component, kind, stands)
         return Fault(incident, component, kind, stands, named.dead_since)
-
-    def _kind(self, component: str, of_alarm: str) -> str:
-        """Return what is wrong with a component now, which may be another thing than at first."""
-        named = self._named.get(component)
-        if named is None or of_alarm in named.kinds:
-            return of_alarm
-        return named.kinds[0]
 
     def _hears_one(self, name: str, listeners: Mapping[str, Set[str]]) -> bool:
         """Return whether somebody else that is named may be why a component is abnormal."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Dict, List, Sequence, Tuple
 
 from self_awareness.recovery.history import Action
-from self_awareness.recovery.ladder import Standing
+from self_awareness.recovery.ladder import Climb
 from self_awareness.stamps import utc
 
 OK, WARN, ERROR = 0, 1, 2
@@ -13,18 +13,19 @@ OK, WARN, ERROR = 0, 1, 2
 _MOST_SHOWN = 10
 
 
-def status(watched: int, standings: Sequence[Standing], actions: Sequence[Action], blind: str,
-           held: str) -> Tuple[int, str]:
+def status(now: float, watched: int, climbs: Sequence[Climb], actions: Sequence[Action],
+           blind: str, held: str) -> Tuple[int, str]:
     """Return level and message.
 
     Args:
+        now: by the clock of the climbs [s].
         watched: components that there are rules for.
-        standings: of the rules that have something to mend.
+        climbs: of the rules that have something to mend.
         actions: the last ones.
         blind: why nothing is known; empty: it is known.
         held: until when nothing is done; empty: not held.
     """
-    told = [f'gave up on {each.rule.component}: {each.gave_up}' for each in standings
+    told = [f'gave up on {each.rule.component}: {each.gave_up}' for each in climbs
             if each.gave_up]
     given_up = bool(told)
     doing = [what(each) for each in actions[-1:] if not each.over]
@@ -34,7 +35,7 @@ def status(watched: int, standings: Sequence[Standing], actions: Sequence[Action
     if blind:
         told.append(f'does nothing: {blind}')
     if not doing and not held and not blind:
-        told += [_waiting(each) for each in standings if not each.gave_up]
+        told += [_waiting(now, each) for each in climbs if not each.gave_up]
     if not told:
         return OK, f'watches {watched} components; {len(actions)} actions so far'
     return ERROR if given_up else WARN, '; '.join(told)
@@ -59,9 +60,9 @@ def what(action: Action) -> str:
     return f'{text}: {"done" if action.success else "not done"}: {action.result}'
 
 
-def _waiting(standing: Standing) -> str:
-    number = min(standing.tried + 1, len(standing.rule.steps))
-    when = (f'in {standing.due_in:.0f} s, if it does not recover' if standing.due_in > 0.0
+def _waiting(now: float, climb: Climb) -> str:
+    number = min(climb.tried + 1, len(climb.rule.steps))
+    when = (f'in {climb.next_at - now:.0f} s, if it does not recover' if climb.next_at > now
             else 'as soon as it fails so again')
-    return (f'{standing.rule.component} is to be mended by step {number} of '
-            f'{len(standing.rule.steps)} {when}')
+    return (f'{climb.rule.component} is to be mended by step {number} of '
+            f'{len(climb.rule.steps)} {when}')

@@ -4,8 +4,8 @@ from __future__ import annotations
 from typing import Any, Dict, List
 
 from self_awareness.learning.age import Age
-from self_awareness.reporting.text import percent
-from self_awareness.stamps import SECOND_NS, moment
+from self_awareness.reporting.text import aligned, duration, first_lines, number_of, percent
+from self_awareness.stamps import SECOND_NS, to_the_second
 
 _DAY_S = 86_400.0
 _MOST_LINES = 10
@@ -29,37 +29,39 @@ def summarise(age: Age) -> Dict[str, Any]:
     }
 
 
-def lines(age: Age) -> List[str]:
-    """Return how old a model is, as text."""
-    text = [f'learned      until {moment(age.learned_until)}']
+def lines(age: Age, details: bool = False) -> List[str]:
+    """Return how old a model is, as text: the verdict first, then what drifts, or all components.
+
+    Args:
+        age: what recordings say of it.
+        details: list the components that do not drift, too.
+    """
+    text = [f'learned until {to_the_second(age.learned_until)}; {_verdict(age)}']
+    shown = sorted(age.drift.items(), key=lambda item: -item[1].evidence)
+    if not details:
+        shown = [item for item in shown if item[1].told_by]
+    rows = [(name, percent(drift.usual), percent(drift.last),
+             *([f'{drift.evidence:.3g} of {age.needed:g}'] if details else []))
+            for name, drift in shown]
+    if rows:
+        head = ['component', 'usual', 'last, of the limit', *(['evidence'] if details else [])]
+        table = aligned([head, *rows])
+        text += [f'  {line}' for line in (table if details else first_lines(
+            table, _MOST_LINES + 1, ' (--details)'))]
+    for reason, number in age.left_out.items():
+        text.append(f'left out, {reason}: {number_of(number, "recording")}')
+    return text + [f'  {each.part}: {each.why}' for each in age.heard if each.why]
+
+
+def _verdict(age: Age) -> str:
     until = _heard_until(age)
     if until is None:
-        text.append('heard since  nothing that could tell a drift')
-    else:
-        days = max(0.0, (until - age.learned_until) / SECOND_NS / _DAY_S)
-        text.append(f'heard since  until {moment(until)}, {days:.1f} days later: '
-                    f'{_hours(age):.1f} h in {len(age.counted)} recordings, {age.samples} starts '
-                    'of the robot or days of one')
-    for reason, number in age.left_out.items():
-        text.append(f'left out     {number} recordings: {reason}')
-    text += [f'  {each.part}: {each.why}' for each in age.heard if each.why]
-    if age.drift:
-        text += _drift(age)
-    return text
-
-
-def _drift(age: Age) -> List[str]:
-    text = ['drift        ' + (', '.join(age.drifting) or 'none is told')
-            + f' (told where the evidence is {age.needed:g} or more)',
-            '     usual      last  evidence  [share of the limit]']
-    ranked = sorted(age.drift.items(), key=lambda item: -item[1].evidence)
-    for name, drift in ranked[:_MOST_LINES]:
-        told = f', since sample {drift.told_by}' if drift.told_by else ''
-        text.append(f'  {percent(drift.usual):>8}  {percent(drift.last):>8}  '
-                    f'{drift.evidence:8.3g}  {name}{told}')
-    if len(ranked) > _MOST_LINES:
-        text.append(f'  and {len(ranked) - _MOST_LINES} components with less evidence')
-    return text
+        return 'nothing was heard since that could tell a drift'
+    days = round(max(0.0, (until - age.learned_until) / SECOND_NS / _DAY_S))
+    return (f'heard since for {duration(3600.0 * _hours(age))} in '
+            f'{number_of(age.samples, "start")} of the robot or days of one, the last '
+            f'{number_of(days, "day")} later: '
+            + (f'drifting: {", ".join(age.drifting)}' if age.drifting else 'nothing drifts'))
 
 
 def _heard_until(age: Age) -> Any:

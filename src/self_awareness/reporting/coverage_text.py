@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Any, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 from self_awareness import Coverage
-from self_awareness.reporting.text import aligned, first_lines, first_of, rounded
+from self_awareness.reporting.text import aligned, duration, first_lines, first_of, rounded
 
 _COLUMNS = ('component', 'speaks every', 'death found after', 'late answers')
 _MOST_NAMED = 8
@@ -111,8 +111,11 @@ def optional_lines(summary: Mapping[str, Any]) -> List[str]:
 
 
 def _death(each: Dict[str, Any], fewest_gaps: int) -> str:
+    alone_s, asked_s = each['death_found_after'], each['found_when_asked']
     if each['watched']:
-        return str(each['found_after'])
+        return ', '.join([*([duration(alone_s)] if alone_s else []), *(
+            [f'{duration(asked_s)} while what runs with it goes on']
+            if asked_s and (not alone_s or asked_s < alone_s) else [])])
     if each['gaps'] < fewest_gaps:
         return f'not watched: {each["gaps"]} gaps in training, {fewest_gaps} are needed'
     return 'not watched: all of it came at one moment'

@@ -1,4 +1,4 @@
-"""What is in an event log or a result bag, and of what version a file is (docs/files.md).
+"""What is in an event log or a result bag, and of what version a file is (docs/monitor.md).
 
 As plain values: for reading, and for JSON.
 """

@@ -8,9 +8,12 @@ from typing import Any, Dict, List, Optional, Tuple
 from self_awareness import (USUAL_SHARES, Calibration, EvidenceModel, PaperCalibration,
                             Recording, TrainedModel, Tuning, encoding_file)
 from self_awareness.judging import EVIDENCE, PAPER
-from self_awareness.reporting import coverage_text, relations_text
+from self_awareness.reporting import coverage_text
 from self_awareness.reporting.file_summary import summarise_version
 from self_awareness.stamps import SECOND_NS
+
+_RELATIONS = ('pairs', 'deadlines')
+"""The channels that look at two event types."""
 
 
 def summarise(model: TrainedModel) -> Dict[str, Any]:
@@ -77,7 +80,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
     summary: Dict[str, Any] = {
         'tracks': dict(Counter(track.channel for track in tracks)),
         'not_judged': [str(kind) for index, kind in enumerate(model.event_types)
-                       if model.gaps(index) < model.fewest_gaps and not kind.is_latched],
+                       if model.gaps(index) < model.fewest_gaps and kind.is_message],
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
         'without': model.tuning.without,
         'unheard': coverage_text.unheard(model.unheard),
@@ -90,9 +93,37 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
                   if not math.isnan(limit)]
         summary['calibration'] = _calibration(model.calibration)
         summary['calibration']['judged_tracks'] = dict(Counter(each.channel for each in judged))
-        summary['calibration']['relations'] = relations_text.relations(model, evidence)
+        summary['calibration']['relations'] = _relations(model, evidence)
         summary['calibration']['coverage'] = coverage_text.summarise(model.coverage())
     return summary
+
+
+def _relations(model: TrainedModel, evidence: EvidenceModel) -> List[Dict[str, Any]]:
+    """Return what speaks for each relation that might be watched; of a calibrated model.
+
+    The own history of an event type is no relation.
+    """
+    calibration = model.calibration
+    if calibration is None:
+        return []
+    found: List[Dict[str, Any]] = []
+    for track, limit, relation in zip(evidence.tracks, calibration.limits, calibration.relations):
+        if track.channel not in _RELATIONS or track.from_id == track.to_id:
+            continue
+        found.append({
+            'channel': track.channel,
+            'from': str(model.event_types[track.from_id]),
+            'to': str(model.event_types[track.to_id]),
+            'judged': not math.isnan(limit),
+            'watched': relation.watched,
+            'reaches': relation.reaches,
+            'irregular': relation.irregular,
+            'chance': relation.spread ** max(relation.starts - 1, 0),
+            'starts': relation.starts,
+            'starts_needed': relation.starts_needed,
+            'graph': bool(model.graph),
+        })
+    return found
 
 
 def _event_type(model: TrainedModel, evidence: Optional[EvidenceModel], index: int,

@@ -67,7 +67,7 @@ def _by_topic(event_types: Sequence[EventType], counts: Mapping[int, int]) -> Di
     found: Counter = Counter()
     for index, count in counts.items():
         kind = event_types[index]
-        if count and not kind.tells_mode and not kind.is_latched:
+        if count and kind.is_message:
             found[kind.source or kind.scope, kind.scope] += count
     return dict(found)
 

@@ -6,6 +6,7 @@ from typing import Any, Dict, List
 
 from self_awareness import summarise_bag
 from self_awareness.parts import BagPart, Named
+from self_awareness.reporting.text import duration, number_of
 from self_awareness.stamps import SECOND_NS, moment
 
 
@@ -25,11 +26,12 @@ def _recording(part: BagPart) -> Dict[str, Any]:
 def lines(summary: Dict[str, Any]) -> List[str]:
     """Return the same in words, but for what is bad."""
     found = summary['recordings']
-    text = [f'recordings   {len(found)}, {sum(each["duration"] for each in found):.1f} s']
+    text = [f'{number_of(len(found), "recording")}, '
+            f'{duration(sum(each["duration"] for each in found))}']
     for each in found:
-        text.append(f'    {each["recording"]}: {each["duration"]:.1f} s, '
+        text.append(f'  {each["recording"]}: {each["duration"]:.1f} s, '
                     f'from {moment(each["start_ns"])}')
         if len(each['files']) > 1:
-            text += [f'        from {file["begin_s"]:.1f} s on: {os.path.basename(file["file"])}'
+            text += [f'    from {file["begin_s"]:.1f} s on: {os.path.basename(file["file"])}'
                      for file in each['files']]
     return text

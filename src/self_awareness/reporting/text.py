@@ -15,6 +15,22 @@ def rounded(value: float, digits: int) -> str:
     return f'{float(f"{value:.{digits}g}"):g}'
 
 
+def duration(seconds: float) -> str:
+    """Return how long something lasts as people say it: 0.38 s, 12 s, 4 min, 2 h 10 min."""
+    if seconds < 100.0:
+        return f'{rounded(seconds, 2)} s'
+    minutes = round(seconds / 60.0)
+    if minutes < 100:
+        return f'{minutes} min'
+    hours, minutes = divmod(minutes, 60)
+    return f'{hours} h' + (f' {minutes:02d} min' if minutes else '')
+
+
+def number_of(number: int, what: str) -> str:
+    """Return how many there are: '1 start', '2 starts'."""
+    return f'{number} {what}{"" if number == 1 else "s"}'
+
+
 def percent(share: float) -> str:
     """Return a share as people read it: '110 %'."""
     return f'{100.0 * share + 0.0:.0f} %'  # never -0
@@ -45,10 +61,10 @@ def first_of(names: Sequence[str], most: int, joint: str = ' ') -> str:
     return ', '.join(names[:most]) + (f'{joint}and {more} more' if more > 0 else '')
 
 
-def first_lines(lines: Sequence[str], most: int, others: str = '') -> List[str]:
+def first_lines(lines: Sequence[str], most: int, others: str = '', indent: str = '') -> List[str]:
     """Return lines, of many the first ones, and one that says how many more there are."""
     more = len(lines) - most
-    return [*lines[:most], *([f'and {more} more{others}'] if more > 0 else [])]
+    return [*lines[:most], *([f'{indent}and {more} more{others}'] if more > 0 else [])]
 
 
 def cell(text: str) -> str:

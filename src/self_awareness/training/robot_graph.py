@@ -15,7 +15,7 @@ _HEADER = """\
 # Who published and who subscribed to what, by topic, as the robot's master knew it.
 """
 _VERSION = 'version'
-"""Key of what the file says of its version (docs/files.md); no topic is called so."""
+"""Key of what the file says of its version (docs/monitor.md); no topic is called so."""
 
 _HOSTS = 'hosts'
 """Key of the computers of nodes; no topic is called so either."""

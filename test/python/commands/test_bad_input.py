@@ -101,7 +101,9 @@ def test_a_bad_model_is_named(contents: str, model_file: str, robot_bags, tmp_pa
 def test_bins_and_windows_have_a_length(robot_bags, tmp_path: Path, option: str, value: str,
                                         capsys) -> None:
     assert train.main([robot_bags[0], '-o', str(tmp_path / 'm'), f'{option}={value}']) == 2
-    assert f'argument {option}' in capsys.readouterr().err
+    error, = capsys.readouterr().err.splitlines()
+    assert error.startswith(f'train: error: argument {option}: expected ')
+    assert error.endswith(' (train --help says more)')
     assert not (tmp_path / 'm').exists()
 
 
@@ -124,7 +126,8 @@ def test_values_out_of_range_are_wrong_usage(program: str, option: str, value: s
                                str(tmp_path / 'm')],
                  'info': [model_file]}[program]
     assert PROGRAMS[program].main([*arguments, f'{option}={value}']) == 2
-    assert option in capsys.readouterr().err
+    error, = capsys.readouterr().err.splitlines()
+    assert error.startswith(f'{program}: error: ') and option in error
     assert not (tmp_path / 'm').exists()
 
 
@@ -139,5 +142,5 @@ def test_ctrl_c_ends_it(monkeypatch, model_file: str, capsys) -> None:
     def interrupted(_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(info, 'summarise', interrupted)
+    monkeypatch.setattr(info.verdict, 'lines', interrupted)
     assert info.main([model_file]) == 130

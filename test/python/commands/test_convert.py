@@ -65,7 +65,7 @@ def test_all_recordings_of_a_log_are_trained_on(long_bags: Bags, log: str, tmp_p
                                                 capsys) -> None:
     models = [str(tmp_path / name) for name in ('bags', 'log')]
     assert train.main([*long_bags, '-o', models[0]]) == 0
-    assert train.main([log, '-o', models[1], '--jobs', '2']) == 0
+    assert train.main([log, '-o', models[1], '--jobs', '2', '--details']) == 0
     said = capsys.readouterr().out
     assert f'{log}#1: 120.0 s' in said and f'{log}#2: 120.0 s' in said
     one, other = (learned(TrainedModel.load(model), calibrations=True) for model in models)
@@ -129,8 +129,10 @@ def test_a_log_is_compared_with_a_model(log: str, evidence_model: str, capsys) -
 
 def test_info_says_what_is_in_a_log(log: str, capsys) -> None:
     assert info.main([log]) == 0
+    assert capsys.readouterr().out == 'event log    2 recordings, 4 min, nodes: 3\n'
+    assert info.main([log, '--details']) == 0
     said = capsys.readouterr().out
-    for text in ('recordings   2, 240.0 s\n',
+    for text in ('event log    2 recordings, 4 min, nodes: 3\n',
                  '#2 tuesday.bag: 120.0 s, 5125 events, from 1970-01-01 05:33:20',
                  '20  /laser /scan std_msgs/String', 'event types  3'):
         assert text in said

@@ -61,17 +61,39 @@ def test_a_death_is_found_as_soon_as_was_said(evidence_model: str, make_bag: Cal
 def test_who_is_not_watched_is_named_with_what_is_missing(half_blind: Tuple[str, str],
                                                           capsys) -> None:
     model, normal = half_blind
-    fewer = f'not watched: {TrainedModel.load(model).coverage()[-1].gaps} gaps in training, 8 '
+    gaps = TrainedModel.load(model).coverage()[-1].gaps
     for program, arguments in ((info, [model]),
                                (calibrate, ['--model', model, '--normal', normal, '-o', model])):
         capsys.readouterr()
         assert program.main(arguments) == 0
+        verdict = capsys.readouterr().out.splitlines()[0]
+        assert 'deaths of 3 of 4 nodes found within ' in verdict
+        assert verdict.endswith(f'; /rare is not watched: {gaps + 1} messages in training, more '
+                                'than 8 are needed')
+        assert program.main([*arguments, '--details']) == 0
         lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
         row, = (line for line in lines if line.startswith('/rare  '))
-        assert fewer in row
+        assert f'not watched: {gaps} gaps in training, 8 ' in row
         assert MISSING in lines
         watched, = (line for line in lines if line.startswith('/laser  '))
         assert 'not watched' not in watched
+
+
+def test_several_that_are_not_watched_are_a_table(half_blind: Tuple[str, str], tmp_path: Path,
+                                                  capsys) -> None:
+    from conftest import write_bag
+    bag = write_bag(tmp_path / 'b.bag', sorted([*with_rare(1000.0, 120.0, 1),
+                                                *((1010.0 + i, '/door', '/open')
+                                                  for i in range(3))]))
+    path = str(tmp_path / 'm')
+    assert train.main([bag, '-o', path]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith('; 2 are not watched')
+    assert lines[1:4] == [
+        '  not watched  why',
+        '  /door        3 messages in training, more than 8 are needed',
+        '  /rare        6 messages in training, more than 8 are needed']
+    assert lines[4].startswith('record next: ')
 
 
 def test_json_has_the_table(half_blind: Tuple[str, str], capsys) -> None:
@@ -89,7 +111,7 @@ def test_no_result_is_green_where_nobody_looks(half_blind: Tuple[str, str], tmp_
     assert score.main([normal, '--model', model, '--report', str(page), '--result-bag',
                        str(results)]) == 0
     out = capsys.readouterr().out
-    assert ', alarms: 0' in out and f'{model}: {MISSING}\n' in out
+    assert out.startswith(f'{model}: {MISSING}\n{normal}: 2 min, nothing abnormal\n')
     text = page.read_text()
     assert f'Nothing abnormal, but {MISSING}.' in text
     assert 'Who is watched' in text and '<td>/rare</td><td>20 s</td><td>not watched: ' in text
@@ -120,5 +142,5 @@ def test_a_model_without_limits_has_no_table(half_blind: Tuple[str, str], tmp_pa
     model.calibration = None
     model.save(path)
     assert TrainedModel.load(path).coverage() == []
-    assert info.main([path]) == 0
+    assert info.main([path, '--details']) == 0
     assert 'death found after' not in capsys.readouterr().out

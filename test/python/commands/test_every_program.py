@@ -5,9 +5,10 @@ import contextlib
 import importlib
 import io
 import os
+import re
 import subprocess
 from pathlib import Path
-from typing import List
+from typing import List, Tuple
 from xml.etree import ElementTree
 
 import pytest
@@ -60,6 +61,21 @@ def test_help(program: str, monkeypatch) -> None:
     assert max(map(len, lines)) < 100
     assert torn_lines(lines) == []
     assert program in OF_DEVELOPERS or JARGON.findall(text) == []
+
+
+JUDGING = ('--detector', '--csv', '--settle-time', '--alarm-windows', '--alarm-of', '--hold-time')
+
+
+@pytest.mark.parametrize('program, options', [
+    ('train', ('--detector', '--bin', '--window', '--horizon')),
+    ('calibrate', (*JUDGING, '--cutoff', '--roc')), ('score', JUDGING)])
+def test_options_of_researchers_have_a_heading_of_their_own(
+        program: str, options: Tuple[str, ...]) -> None:
+    everybody, researchers = _help(program).split('\nfor researchers:\n')
+    _, _, everybody = everybody.partition('\n\n')  # without the usage
+    shown = re.findall(r'^  (--[a-z-]+)', researchers, re.MULTILINE)
+    assert sorted(shown) == sorted(options)
+    assert not set(shown) & set(re.findall(r'--[a-z-]+', everybody))
 
 
 def torn_lines(lines: List[str]) -> List[str]:

@@ -95,7 +95,7 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
     # Left out in turn, the halves of the training say how many are to be expected.
     assert calibration['false_alarms_per_hour'] == TrainedModel.load(
         output).calibration.false_alarms_per_hour >= 0.0
-    assert info.main([output]) == 0
+    assert info.main([output, '--details']) == 0
     printed = capsys.readouterr().out
     assert 'sources that somebody listens to: 1, connections: 2' in printed
     assert 'not watched, since they publish nothing: /map_saver' in printed
@@ -123,7 +123,7 @@ def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None
     evidence = as_json(capsys, output)['evidence']
     assert evidence['not_judged'] == ['/door /open std_msgs/String']
     assert evidence['calibration'] is None
-    assert info.main([output]) == 0
+    assert info.main([output, '--details']) == 0
     assert '  not judged: /door /open std_msgs/String\n' in capsys.readouterr().out
 
 
@@ -135,18 +135,25 @@ def test_too_rare_is_what_has_fewer_gaps_than_the_model_asks_for(long_bags, tmp_
     judged = {kind['source']: kind['judged'] for kind in summary['event_types']}
     assert judged == {'/battery': False, '/laser': True, '/slam': True}
     assert [name.split()[0] for name in summary['evidence']['not_judged']] == ['/battery']
-    assert info.main([output]) == 0
+    assert info.main([output, '--details']) == 0
     assert 'too rare to judge: fewer than 1000 gaps' in capsys.readouterr().out
     assert calibrate.main(['--model', output, '--normal', long_bags[1], '-o', output]) == 0
-    assert 'not watched: 324 gaps in training, 1000 are needed' in capsys.readouterr().out
+    assert ('; /battery is not watched: 325 messages in training, more than 1000 are needed\n'
+            in capsys.readouterr().out)
     assert as_json(capsys, str(output))['fewest_gaps'] == 1000
-    assert train.main([long_bags[0], '-o', str(tmp_path / 'n')]) == 0
-    assert 'too rare to judge (fewer than 8 gaps between two of a kind)  0' in (
-        capsys.readouterr().out)
+
+
+def test_people_read_the_verdict_and_what_comes_next(evidence_model: str, capsys) -> None:
+    assert info.main([evidence_model]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith('learned from 2 starts, 4 min: at most 1 false alarm an hour; ')
+    assert lines[1].startswith('record next: 34 min of other starts, for half as many false ')
+    assert lines[2:] == ['next:', '  roslaunch self_awareness monitor.launch '
+                         f'model:={evidence_model}']
 
 
 def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
-    assert info.main([evidence_model]) == 0
+    assert info.main([evidence_model, '--details']) == 0
     text = capsys.readouterr().out
     for part in ('evidence     watches: overdue 3, pace 6',
                  'limits       of recordings that were not trained on, for 0.5 false',
@@ -155,7 +162,7 @@ def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
 
 
 def test_people_read_the_same(model_file: str, capsys) -> None:
-    assert info.main([model_file]) == 0
+    assert info.main([model_file, '--details']) == 0
     text = capsys.readouterr().out
     for part in ('not calibrated', 'first.bag', '1282', LASER, SLAM, '/rosout_agg', 'no horizon'):
         assert part in text

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import json
 import random
+import re
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
@@ -82,9 +83,11 @@ def test_a_robot_that_stays_as_it_is_does_not_drift(model: str, capsys) -> None:
     assert {each['component'] for each in age['components']} == {'/laser', '/slam', '/battery'}
     assert all(0.0 <= each['usual_share'] < 1.0 for each in age['components'])
     assert info.main([model, '--age']) == 0
-    text = capsys.readouterr().out
-    assert '8 starts of the robot or days of one' in text
-    assert 'drift        none is told (told where the evidence is 300 or more)' in text
+    line, = capsys.readouterr().out.splitlines()
+    assert re.fullmatch(r'learned until 1970-\S+ \S+ UTC; heard since for 17 min in 8 starts of '
+                        r'the robot or days of one, the last 14 days later: nothing drifts', line)
+    assert info.main([model, '--age', '--details']) == 0
+    assert re.search(r'^  /laser +\d+ % +\d+ % +\S+ of 300$', capsys.readouterr().out, re.M)
 
 
 def test_a_rate_that_falls_from_day_to_day_is_told_before_the_alarm(model: str, capsys) -> None:
@@ -97,6 +100,11 @@ def test_a_rate_that_falls_from_day_to_day_is_told_before_the_alarm(model: str, 
     told = min(each['told_by_sample'] for each in age['components'] if each['told_by_sample'])
     assert age['drifting'] and 12 < told <= age['samples']
     assert {'/laser', '/slam'} >= set(age['drifting'])
+    assert info.main([model, '--age']) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith(f'drifting: {", ".join(age["drifting"])}')
+    assert lines[1].split() == ['component', 'usual', 'last,', 'of', 'the', 'limit']
+    assert [line.split()[0] for line in lines[2:2 + len(age['drifting'])]] == age['drifting']
 
 
 def test_recordings_of_a_start_are_one_sample_a_day(model: str, capsys) -> None:

@@ -106,9 +106,9 @@ def test_a_mode_that_training_never_saw_is_no_stranger(model: str, tmp_path: Pat
                                                        capsys) -> None:
     bag = write(tmp_path / 'lost.bag', 90000.0, lost_at=2 * (DRIVE_S + CHARGE_S) + 2.0)
     capsys.readouterr()
-    assert score.main(['--model', model, bag]) == 0
+    assert score.main(['--model', model, bag, '--details']) == 0
     said = capsys.readouterr().out
-    assert 'alarms: 0, suspicions: 0\n' in said
+    assert said.startswith(f'{bag}: ') and ', nothing abnormal\n' in said
     assert said.count('LOST') == 1
     assert ('  modes never seen in training: they say nothing:\n'
             f'    /logic {STATE} std_msgs/String[mode: LOST]: 1\n') in said
@@ -166,7 +166,7 @@ def test_the_model_keeps_what_tells_the_mode(model: str, plain: str, tmp_path: P
     assert TrainedModel.load(model).encoding.mode == (STATE, 'data')
     assert encoding_file.values(TrainedModel.load(plain).encoding)['mode'] == {}
     capsys.readouterr()
-    assert info.main([model]) == 0
+    assert info.main([model, '--details']) == 0
     assert STATE in capsys.readouterr().out
     assert merge.main([model, plain, '-o', str(tmp_path / 'both.model')]) != 0
     assert 'mode' in capsys.readouterr().err

@@ -61,7 +61,7 @@ def test_what_does_not_come_is_a_suspicion_and_then_an_alarm(
     assert suspicious[0] == pytest.approx(2 * 14.6, abs=0.3)
     alarm, = verdicts.alarms
     assert alarm.begin / SECOND_NS - origin == pytest.approx(4 * 2 * 14.6, abs=0.5)
-    assert score.main([bag, '--model', model]) == 0
+    assert score.main([bag, '--model', model, '--details']) == 0
     said = capsys.readouterr().out
     assert 'never heard' in said
     assert (f'{LASER} /scan std_msgs/String: not heard since the start, usually within '

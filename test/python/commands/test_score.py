@@ -38,7 +38,7 @@ def rows_of(path) -> List[Dict[str, str]]:
 
 
 def test_the_alarm_and_its_suspect_are_printed(calibrated: str, dead_laser: str, capsys) -> None:
-    assert score.main([dead_laser, '--model', calibrated, *PAPER]) == 0
+    assert score.main([dead_laser, '--model', calibrated, *PAPER, '--details']) == 0
     out = capsys.readouterr().out
     told, = re.findall(r'^  (/.*)$', out, re.MULTILINE)
     assert told == '/laser (/scan) fell silent at 11.9 s, and came back at 20.0 s.'
@@ -75,7 +75,8 @@ def test_unknown_events_are_counted_and_named(calibrated: str, make_bag: Callabl
     bag = make_bag('new.bag', sorted([*robot(3000.0), (3010.0, '/new', '/a'),
                                       (3011.0, '/new', '/a'), (3012.0, '/new', '/b')]))
     table = tmp_path / 'w.csv'
-    assert score.main([bag, '--model', calibrated, *PAPER, '--csv', str(table)]) == 0
+    assert score.main([bag, '--model', calibrated, *PAPER, '--details', '--csv',
+                       str(table)]) == 0
     out = capsys.readouterr().out
     assert '    /new /a std_msgs/String: 2\n    /new /b std_msgs/String: 1\n' in out
     assert sum(int(row['unknown']) for row in rows_of(table)) == 3
@@ -124,7 +125,7 @@ def test_scripts_see_an_alarm_by_the_exit_code(calibrated: str, dead_laser: str,
     normal = make_bag('normal.bag', robot(7000.0))
     assert score.main([normal, '--model', calibrated, *PAPER, '--fail']) == 0
     assert score.main([normal, dead_laser, '--model', calibrated, *PAPER, '--fail']) == 3
-    assert 'alarms: 1' in capsys.readouterr().out
+    assert capsys.readouterr().out.splitlines()[-1] == '2 recordings, 60 s: 1 incident'
     assert score.main([dead_laser, '/gone.bag', '--model', calibrated, *PAPER, '--fail']) == 1
     assert score.main([dead_laser, '--model', model_file, *PAPER, '--fail']) == 1
     assert (f'--fail: {model_file} is not calibrated, so nothing would ever be an alarm'

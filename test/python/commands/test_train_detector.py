@@ -109,7 +109,7 @@ def test_what_is_added_is_counted_for_the_same_detector(detector: str, long_bags
 def test_info_shows_the_delays_of_either(models: Dict[str, str], capsys) -> None:
     for detector, model in models.items():
         capsys.readouterr()
-        assert info.main([model]) == 0
+        assert info.main([model, '--details']) == 0
         assert f'detector     {detector}' in capsys.readouterr().out
         assert info.main([model, '--pair', '/laser', '/slam']) == 0
         lines = capsys.readouterr().out.splitlines()

@@ -4,14 +4,12 @@ from __future__ import annotations
 import os
 import random
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, Optional
+from typing import Any, Callable, Iterator, List, Optional
 
 import pytest
-from conftest import jittery_robot, learned, write_bag
+from conftest import jittery_robot, learned, trained, write_bag
 
 from self_awareness import EncodingRules, EvidenceModel, Learner, TrainedModel, read_events
-from self_awareness.commands import train
-from self_awareness.judging import BOTH, EVIDENCE
 from self_awareness.parts import BagPart
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
@@ -29,14 +27,6 @@ class InBatches(InProcess):
     def batches(self, tasks: int) -> int:
         """See Workers."""
         return min(self._number, tasks)
-
-
-class TwoBatches(Processes):
-    """Processes, with two batches of bags."""
-
-    def batches(self, tasks: int) -> int:
-        """See Workers."""
-        return 2
 
 
 class Watched(Processes):
@@ -68,27 +58,8 @@ def _bags(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
     return paths
 
 
-def counted(bags: List[str], workers: Optional[Workers] = None, detector: str = EVIDENCE,
-            **options: Any) -> Trained:
-    return many_bags.train([BagPart(bag) for bag in bags], Counting(detector=detector), workers,
-                           **options)
-
-
-def described(trained: Trained) -> Dict[str, Any]:
-    """Return what a model and its limits say, by the names of event types and bags."""
-    many_bags.preliminary_limits(trained)
-    model = trained.model
-    kinds = model.event_types
-    names = [str(kind) for kind in kinds]
-    calibration = model.calibration
-    tracks = {(track.channel, names[track.from_id], names[track.to_id]):
-              (repr(limit), relation.watched, relation.starts)
-              for track, limit, relation in zip(EvidenceModel(model).tracks, calibration.limits,
-                                                calibration.relations)}
-    delays = {(names[i], names[j]): sorted(model.histogram(i, j).items())
-              for i in range(len(kinds)) for j in range(len(kinds))}
-    return {'tracks': tracks, 'delays': delays, 'expected': calibration.false_alarms_per_hour,
-            'windows': calibration.windows, 'bags': sorted(each.bag for each in model.recordings)}
+def counted(bags: List[str], workers: Optional[Workers] = None, **options: Any) -> Trained:
+    return many_bags.train([BagPart(bag) for bag in bags], Counting(), workers, **options)
 
 
 def at_once(bags: List[str]) -> TrainedModel:
@@ -107,28 +78,24 @@ def failure(bags: List[str], workers: Workers, **options: Any) -> str:
     return str(error.value)
 
 
-@pytest.mark.parametrize('bad', [[], [0], [3], [4, 5], [1, 8]])
-@pytest.mark.parametrize('base', [False, True])
+@pytest.mark.parametrize('bad, base', [([], False), ([], True), ([0], True), ([4, 5], False),
+                                       ([1, 8], True)])
 def test_a_file_is_the_same_however_it_was_counted(bags: List[str], bad: List[int], base: bool,
                                                    tmp_path: Path) -> None:
-    named = list(bags)
-    for index in bad:
-        named[index] = str(tmp_path / f'missing{index}.bag')
+    named = [f'/nowhere/{i}.bag' if i in bad else bag for i, bag in enumerate(bags)]
     options = ['--skip-bad']
     if base:  # one recording: the next belongs to the second half
         options += ['--add-to', str(tmp_path / 'base')]
         first = write_bag(tmp_path / 'first.bag', jittery_robot(1000.0, 30.0, 77))
-        assert train.main([first, '-o', str(tmp_path / 'base')]) == 0
-    for jobs in ('1', '2'):
-        assert train.main([*named, '-o', str(tmp_path / jobs), '--jobs', jobs, *options]) == 0
-    one, two = (TrainedModel.load(str(tmp_path / jobs)) for jobs in ('1', '2'))
+        trained([first], tmp_path / 'base')
+    one, two = (trained(named, tmp_path / jobs, '--jobs', jobs, *options) for jobs in ('1', '2'))
     assert two.calibration is not None
     assert len(two.recordings) == BAGS - len(bad) + base
     assert learned(two, calibrations=True) == learned(one, calibrations=True)
 
 
-@pytest.mark.parametrize('batches', [1, 2, 4, 5])
-@pytest.mark.parametrize('bad', [[], [0], [1], [2, 3, 4], [0, 1, 5, 8]])
+@pytest.mark.parametrize('batches', [1, 2, 5])
+@pytest.mark.parametrize('bad', [[], [0], [2, 3, 4], [0, 1, 5, 8]])
 def test_sums_are_what_one_training_counts(bags: List[str], batches: int, bad: List[int]) -> None:
     named = [f'/nowhere/{i}.bag' if i in bad else bag for i, bag in enumerate(bags)]
     said: List[str] = []
@@ -142,21 +109,16 @@ def test_sums_are_what_one_training_counts(bags: List[str], batches: int, bad: L
     assert summed.bad == one_by_one.bad and len(summed.bad) == len(bad)
 
 
-@pytest.mark.parametrize('seed', range(4))
-def test_the_order_of_bags_changes_nothing(bags: List[str], seed: int) -> None:
-    shuffled = random.Random(seed).sample(bags, len(bags))
-    first, second = (counted(order, detector=BOTH) for order in (bags, shuffled))
-    assert described(first) == described(second)
-
-
-def test_merged_models_hold_what_one_training_does(bags: List[str]) -> None:
-    whole = described(counted(bags, detector=BOTH))
-    for number in (1, 2, 5):
-        merged = counted(bags[:number], detector=BOTH)
-        merged.model.merge(counted(bags[number:], detector=BOTH).model)
-        merged.model.watch()
-        rest = counted(bags[number:], detector=BOTH)
-        assert described(Trained(merged.model, merged.trained_on + rest.trained_on, [])) == whole
+def test_the_order_of_bags_changes_no_limit(bags: List[str]) -> None:
+    found = []
+    for order in (bags, random.Random(1).sample(bags, len(bags))):
+        of_order = counted(order)
+        many_bags.preliminary_limits(of_order)
+        names = [str(kind) for kind in of_order.model.event_types]
+        found.append({(track.channel, names[track.from_id], names[track.to_id]): repr(limit)
+                      for track, limit in zip(EvidenceModel(of_order.model).tracks,
+                                              of_order.model.calibration.limits)})
+    assert found[0] == found[1]
 
 
 def test_only_sums_are_handed_over(bags: List[str]) -> None:
@@ -168,7 +130,7 @@ def test_only_sums_are_handed_over(bags: List[str]) -> None:
     assert len(few.results) == 2  # one for each process
 
 
-@pytest.mark.parametrize('batches', [1, 2, 5, 9])
+@pytest.mark.parametrize('batches', [1, 5])
 def test_the_first_bad_bag_ends_it(bags: List[str], batches: int) -> None:
     said: List[str] = []
     named = [*bags[:3], '/nowhere/a.bag', bags[3], '/nowhere/b.bag']
@@ -177,7 +139,7 @@ def test_the_first_bad_bag_ends_it(bags: List[str], batches: int) -> None:
     assert [line.split(':')[0] for line in said] == bags[:3]
 
 
-@pytest.mark.parametrize('batches', [1, 2, 4, 9])
+@pytest.mark.parametrize('batches', [1, 4])
 def test_the_same_recording_is_found_in_batches(bags: List[str], batches: int,
                                                 tmp_path: Path) -> None:
     again = tmp_path / 'again.bag'
@@ -186,8 +148,8 @@ def test_the_same_recording_is_found_in_batches(bags: List[str], batches: int,
     assert error == f'{again}: the same recording as {bags[1]}; name it once'
 
 
-@pytest.mark.parametrize('batches', [1, 2, 3, 9])
-@pytest.mark.parametrize('nameless, named', [([0], 0), ([2], 2), ([3], 3), ([1, 2, 3, 4], 1),
+@pytest.mark.parametrize('batches', [1, 3, 9])
+@pytest.mark.parametrize('nameless, named', [([0], 0), ([3], 3), ([1, 2, 3, 4], 1),
                                              ([0, 1, 2], 2)])
 def test_the_bag_without_senders_is_named_in_batches(make_bag: Callable[..., str], batches: int,
                                                      nameless: List[int], named: int) -> None:
@@ -214,28 +176,24 @@ def test_too_many_values_are_told_of_a_bag_or_a_batch(make_bag: Callable[..., st
         assert error(batches).startswith(f'one of {bags[2]} to {bags[3]}: ')
 
 
-@pytest.mark.parametrize('workers', [InProcess(), InBatches(3), Processes(2)])
+@pytest.mark.parametrize('workers, expected', [
+    (InProcess(), 'xxxxx----'), (InBatches(3), 'xx-xx-x--'), (Processes(2), 'xx--xx---')])
 def test_so_many_events_are_kept_for_the_limits(bags: List[str], workers: Workers,
-                                                monkeypatch) -> None:
+                                                expected: str, monkeypatch) -> None:
     everything = counted(bags)
     events = [each.events.stamps.size for each in everything.trained_on]
     monkeypatch.setattr(many_bags, '_MOST_EVENTS_OF_BATCH', 2 * max(events))
     monkeypatch.setattr(many_bags, '_MOST_EVENTS', 5 * max(events))
     some = counted(bags, workers)
-    kept = [each.events is not None for each in some.trained_on]
-    if isinstance(workers, InBatches):
-        assert kept == [True, True, False, True, True, False, True, False, False]
-    elif isinstance(workers, Processes):
-        assert kept == [True, True, False, False, True, True, False, False, False]
-    else:
-        assert kept == [True] * 5 + [False] * 4
-    for trained in (everything, some):
-        many_bags.preliminary_limits(trained)
+    kept = ''.join('x' if each.events is not None else '-' for each in some.trained_on)
+    assert kept == expected
+    for each in (everything, some):
+        many_bags.preliminary_limits(each)
     assert some.model.calibration is not None
     assert learned(some.model, calibrations=True) == learned(everything.model, calibrations=True)
 
 
 def test_a_batch_that_takes_the_memory_is_named(bags: List[str], monkeypatch) -> None:
     monkeypatch.setattr(many_bags, '_count', lambda *_: os.kill(os.getpid(), 9))
-    error = failure(bags, TwoBatches(2))
+    error = failure(bags, Processes(2))
     assert error.startswith(f'one of {bags[0]} to {bags[3]}: a process that worked on it')

@@ -8,10 +8,10 @@ from typing import List
 import numpy as np
 import pytest
 import rosbag
-import rospy
+from conftest import put, trained
 from std_msgs.msg import Float32
 
-from self_awareness import TrainedModel, encoding_file, read_events
+from self_awareness import encoding_file, read_events
 from self_awareness.commands import calibrate, convert, info, merge, score, train
 from self_awareness.parts import BagPart
 from self_awareness.training import value_classes
@@ -22,12 +22,9 @@ ENCODING = 'type_fields: {std_msgs/Float32: {field: data, classes: 4}}\n'
 
 def write(path: Path, start: float, values: List[float]) -> str:
     """Write a value ten times a second."""
-    header = {'topic': '/force', 'type': Float32._type, 'md5sum': Float32._md5sum,
-              'message_definition': Float32._full_text, 'callerid': '/arm'}
     with rosbag.Bag(str(path), 'w') as bag:
         for step, value in enumerate(values):
-            bag.write('/force', Float32(value), rospy.Time.from_sec(start + 0.1 * step),
-                      connection_header=header)
+            put(bag, '/arm', '/force', Float32(value), start + 0.1 * step)
     return str(path)
 
 
@@ -53,33 +50,30 @@ def _bags(tmp_path: Path) -> List[str]:
 def test_the_training_learns_them_and_all_use_them(bags: List[str], encoding: str,
                                                    tmp_path: Path, capsys) -> None:
     model = str(tmp_path / 'm')
-    assert train.main([*bags[:2], '--encoding', encoding, '--jobs', '2', '-o', model]) == 0
-    trained = TrainedModel.load(model)
-    (number, bounds), = trained.encoding.classes.values()
+    learned = trained(bags[:2], Path(model), '--encoding', encoding, '--jobs', '2')
+    (number, bounds), = learned.encoding.classes.values()
     assert number == 4 and len(bounds) == 3
-    kinds = [kind.type for kind in trained.event_types]
+    kinds = [kind.type for kind in learned.event_types]
     assert len(kinds) == 4
     assert f'std_msgs/Float32[data={bounds[0]:g} to {bounds[1]:g}]' in kinds
-    shares = [trained.event_count(index) for index in range(4)]
+    shares = [learned.event_count(index) for index in range(4)]
     assert max(shares) < 1.3 * min(shares), 'as many in each'
     assert calibrate.main(['--model', model, '--normal', bags[2], '-o', model]) == 0
     capsys.readouterr()
     assert score.main(['--model', model, bags[2]]) == 0
     assert 'never seen' not in capsys.readouterr().out
-    assert info.main([model]) == 0
+    assert info.main([model, '--details']) == 0
     assert f'{bounds[0]:g}' in capsys.readouterr().out
     # More bags are put into the same classes.
-    assert train.main(['--add-to', model, bags[2], '-o', model]) == 0
-    assert TrainedModel.load(model).encoding == trained.encoding
+    assert trained(bags[2:], Path(model), '--add-to', model).encoding == learned.encoding
 
 
 def test_the_rules_see_new_names(bags: List[str], tmp_path: Path) -> None:
     file = tmp_path / 'e.yaml'
     file.write_text(ENCODING + 'include_topics: [/load]\n')
-    model = str(tmp_path / 'm')
-    assert train.main([bags[0], '--encoding', str(file), '--rename', '/force', '/load',
-                       '-o', model]) == 0
-    assert {kind.scope for kind in TrainedModel.load(model).event_types} == {'/load'}
+    model = trained(bags[:1], tmp_path / 'm', '--encoding', str(file), '--rename', '/force',
+                    '/load')
+    assert {kind.scope for kind in model.event_types} == {'/load'}
 
 
 def test_the_order_of_the_bags_changes_nothing(bags: List[str], encoding: str) -> None:
@@ -113,7 +107,7 @@ def test_models_of_other_classes_are_not_merged(bags: List[str], encoding: str, 
                                                 capsys) -> None:
     models = [str(tmp_path / name) for name in ('a', 'b')]
     for bag, model in zip(bags, models):
-        assert train.main([bag, '--encoding', encoding, '-o', model]) == 0
+        trained([bag], Path(model), '--encoding', encoding)
     assert merge.main([*models, '-o', str(tmp_path / 'both')]) != 0
     assert 'classes' in capsys.readouterr().err
 

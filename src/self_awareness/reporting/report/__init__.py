@@ -1,1 +1,1 @@
-"""The report: one self-contained HTML file that says who failed, when and why (docs/report.md)."""
+"""The report: one self-contained HTML file that says who failed, when and why (docs/alarm.md)."""

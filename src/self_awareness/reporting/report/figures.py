@@ -78,45 +78,32 @@ def _histogram(shown: Histogram) -> Figure:
     """Return the delays of training, with what was seen marked in them."""
     # Log bins of one width: a count stands for its bin, not for its seconds.
     edges = [max(edge, shown.edges[1] / 2 if edge <= 0 else edge) for edge in shown.edges]
-    log = edges[-1] > 3 * edges[0]
-    position = np.log10(edges) if log else np.array(edges)
-    middle, width = (position[1:] + position[:-1]) / 2, np.diff(position)
     total = sum(shown.counts)
     traces: List[Figure] = [{
-        'type': 'bar', 'x': _rounded(10 ** middle if log else middle),
+        'type': 'bar', 'x': _rounded(edges[:-1]), 'width': _rounded(np.diff(edges)), 'offset': 0,
         'y': [100.0 * count / total for count in shown.counts],
         'marker': {'color': BLUE}, 'hoverinfo': 'text',
         'hovertext': [f'{seconds(low)} to {seconds(high)}: {count} of {total}'
                       for low, high, count in zip(shown.edges, shown.edges[1:], shown.counts)],
     }]
-    if log:
-        traces[0]['width'] = _rounded(np.diff(np.array(edges)))
-        traces[0]['x'] = _rounded(edges[:-1])
-        traces[0]['offset'] = 0
-    else:
-        traces[0]['width'] = _rounded(width)
     shapes: List[Figure] = []
     if shown.usual is not None:
         shapes.append(_band(shown.usual[0], shown.usual[1], BLUE, 0.13))
     low, high = edges[0], edges[-1]
-    annotations = []
     if shown.seen is not None and shown.seen > 0:
         shapes.append({'type': 'line', 'xref': 'x', 'yref': 'paper', 'x0': shown.seen,
                        'x1': shown.seen, 'y0': 0, 'y1': 1, 'line': {'color': RED, 'width': 3}})
         low, high = min(low, shown.seen / 1.3), max(high, shown.seen * 1.3)
-    annotations.append({
-        'xref': 'paper', 'yref': 'paper', 'x': 1, 'y': 1.16, 'showarrow': False,
-        'text': f'<b>{shown.seen_text}</b>', 'font': {'color': RED, 'size': 13},
-        'xanchor': 'right'})
-    axis: Figure = {'title': {'text': 'delay [s]'}, 'zeroline': False}
-    if log:
+    seen = {'xref': 'paper', 'yref': 'paper', 'x': 1, 'y': 1.16, 'showarrow': False,
+            'text': f'<b>{shown.seen_text}</b>', 'font': {'color': RED, 'size': 13},
+            'xanchor': 'right'}
+    axis: Figure = {'title': {'text': 'delay [s]'}, 'zeroline': False, 'range': [low, high]}
+    if edges[-1] > 3 * edges[0]:
         axis.update({'type': 'log', 'range': [math.log10(low), math.log10(high)]})
-    else:
-        axis['range'] = [low, high]
     return {'data': traces, 'layout': {
         'height': 210, 'margin': {'l': 46, 'r': 10, 't': 32, 'b': 44}, 'showlegend': False,
         'xaxis': axis, 'yaxis': {'title': {'text': '% in training'}, 'fixedrange': True},
-        'bargap': 0, 'shapes': shapes, 'annotations': annotations}}
+        'bargap': 0, 'shapes': shapes, 'annotations': [seen]}}
 
 
 def two_histograms(before: Bins, after: Bins) -> Figure:

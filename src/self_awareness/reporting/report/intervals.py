@@ -133,11 +133,12 @@ def _interval(judged: Judged, alarm: Alarm) -> Interval:
     suspects = [_named(judged, suspect, alarm) for suspect in alarm.suspects]
     later = [_named(judged, suspect, alarm) for suspect in alarm.later]
     start = judged.seconds(alarm.begin)
-    first = alarm.suspects[0] if alarm.suspects else None
+    # When the trouble began is what the first suspect's numbers look back to.
+    lasted = alarm.suspects[0].reason.lasted if alarm.suspects else math.nan
     return Interval(
         alarm, ALARM if alarm.level == 'ERROR' else SUSPICION, start,
         judged.seconds(alarm.end), moment(alarm.begin), alarm.over,
-        None if first is None else _began(first, start),
+        None if math.isnan(lasted) else start - lasted,
         of_limit(alarm.lowest_score, judged.by.threshold),
         alarm.evidence or 'what is left of the alarm',
         alarm.busy,
@@ -153,11 +154,6 @@ def _named(judged: Judged, suspect: Suspect, alarm: Alarm) -> NamedSuspect:
                                silence is not None and silence.back is not None),
         suspect.reason.words, judged.seconds(suspect.since),
         suspect.abnormal, silence, suspect)
-
-
-def _began(suspect: Suspect, start: float) -> Optional[float]:
-    """Return when the trouble began [s]: what the suspect's numbers look back to."""
-    return None if math.isnan(suspect.reason.lasted) else start - suspect.reason.lasted
 
 
 def _silence_of(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Silence]:

@@ -91,15 +91,8 @@ def draw(shown: Neighbourhood) -> str:
     Raises:
         OSError: dot fails.
     """
-    drawn = [_drawn(shown, direction) for direction in ('TB', 'LR')]
-    return min(drawn, key=_width)
-
-
-def _width(svg: str) -> int:
-    """Return the width of a drawing of dot [pt]."""
-    found = re.search(r'<svg width="(\d+)pt"', svg)
-    assert found is not None
-    return int(found[1])
+    return min((_drawn(shown, direction) for direction in ('TB', 'LR')),
+               key=lambda svg: int(re.findall(r'<svg width="(\d+)pt"', svg)[0]))
 
 
 def _drawn(shown: Neighbourhood, direction: str) -> str:

@@ -138,7 +138,7 @@
       document.querySelectorAll('[data-open]').forEach(function (button) {
         document.getElementById(button.dataset.open).open = true;
       });
-      (data.sections || []).forEach(function (section) {
+      data.sections.forEach(function (section) {
         for (const [key, incident] of Object.entries(section.incidents)) {
           if (document.getElementById(key).open) {
             drawDetails(incident);
@@ -152,9 +152,7 @@
       redraw();
     });
     for (const media of [dark, narrow]) {
-      if (media.addEventListener) {
-        media.addEventListener('change', redraw);
-      }
+      media.addEventListener('change', redraw);
     }
   }
 

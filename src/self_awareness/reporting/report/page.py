@@ -3,11 +3,9 @@ from __future__ import annotations
 
 import base64
 import importlib.util
-import json
 import os
 import zlib
 from typing import Any, Dict, Optional, Sequence
-from urllib.parse import quote
 
 from self_awareness.output_files import replacing
 from self_awareness.reporting.report import figures, neighbours
@@ -43,7 +41,7 @@ def save_report(path: str, sections: Sequence[Section]) -> None:
                           for each in section.incidents},
         } for section in sections]},
         sections=sections, clock=clock,
-        draw=neighbours.draw, address=_address)
+        draw=neighbours.draw)
 
 
 def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> None:
@@ -57,6 +55,7 @@ def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> 
 
     Raises:
         OSError: the file cannot be written.
+        ValueError: a number of the data is not finite.
     """
     # Both take long to import: only a program that writes a page imports them.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
@@ -65,26 +64,14 @@ def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> 
 
     environment = Environment(loader=FileSystemLoader(_FOLDER), autoescape=True,
                               undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    # JSON has no numbers that are not finite.
+    environment.policies['json.dumps_kwargs'] = {'separators': (',', ':'), 'allow_nan': False}
     page = environment.get_template(template).stream(
-        data=script_json(data), style=_contents('page.css'), script=_contents('page.js'),
-        plotly=_packed(get_plotlyjs()),
-        evals=int(plotly.__version__.split('.')[0]) < _WITHOUT_EVAL,
-        **values)
+        data=data, plotly=_packed(get_plotlyjs()),
+        evals=int(plotly.__version__.split('.')[0]) < _WITHOUT_EVAL, **values)
     with replacing(path) as temporary:
         with open(temporary, 'w', encoding='utf-8') as file:
             file.writelines(page)
-
-
-def script_json(value: Any) -> str:
-    """Return JSON that can stand inside of a script element, whatever the texts are.
-
-    Raises:
-        ValueError: a number is not finite: JSON has none of these.
-    """
-    text = json.dumps(value, separators=(',', ':'), allow_nan=False)
-    for character in '<>&':  # a text might end the element, or begin a comment
-        text = text.replace(character, f'\\u{ord(character):04x}')
-    return text
 
 
 def _drawn(incident: Incident, details: Optional[Details]) -> Dict[str, Any]:
@@ -96,16 +83,6 @@ def _drawn(incident: Incident, details: Optional[Details]) -> Dict[str, Any]:
             'figures': drawn}
 
 
-def _address(text: str) -> str:
-    """Return a text as the address of a link that saves it."""
-    return f'data:application/xml,{quote(text)}'
-
-
 def _packed(script: str) -> str:
     """Return a script as page.js unpacks it: Debian's plotly.js has 8.7 MB, and packed 2.5."""
     return base64.b64encode(zlib.compress(script.encode('utf-8'), 9)).decode('ascii')
-
-
-def _contents(name: str) -> str:
-    with open(os.path.join(_FOLDER, name), encoding='utf-8') as file:
-        return file.read()

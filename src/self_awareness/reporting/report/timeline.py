@@ -9,7 +9,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import Alarm, EvidenceLanes, Track, Verdicts
+from self_awareness import EvidenceLanes, Track, Verdicts
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import SECOND_NS
 
@@ -112,20 +112,16 @@ def cut(verdicts: Verdicts, components: int) -> np.ndarray:
     first = np.zeros(windows, dtype=bool)
     first[::step] = True
     room = most - int(first.sum())
-    for begin, end in _near(verdicts, [*verdicts.alarms, *verdicts.suspicions]):
+    starts = np.array([each.begin for each in [*verdicts.alarms, *verdicts.suspicions]],
+                      dtype=np.int64)
+    near = (np.searchsorted(verdicts.start, starts + around) for around in (-_BEFORE, _AFTER))
+    for begin, end in zip(*(each.tolist() for each in near)):
         end = min(end, begin + max(room, 0))
         room -= int((~first[begin:end]).sum())
         first[begin:end] = True
         if end < windows:
             first[end] = True  # the long stretch goes on after it
     return np.flatnonzero(first)
-
-
-def _near(verdicts: Verdicts, stretches: Sequence[Alarm]) -> List[Sequence[int]]:
-    starts = np.array([stretch.begin for stretch in stretches], dtype=np.int64)
-    begins = np.searchsorted(verdicts.start, starts - _BEFORE)
-    ends = np.searchsorted(verdicts.start, starts + _AFTER)
-    return list(zip(begins.tolist(), ends.tolist()))
 
 
 def strongest_track(found: Overview, judged: Judged, time: float) -> Optional[Tuple[Track, float]]:

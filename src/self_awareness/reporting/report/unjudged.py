@@ -86,7 +86,7 @@ def _too_rare(judged: Judged) -> List[Unjudged]:
     return _listed('too rare in training',
                    f'fewer than {trained.fewest_gaps} gaps between two of a kind',
                    [str(kind) for index, kind in enumerate(trained.event_types)
-                    if trained.gaps(index) < trained.fewest_gaps and not kind.is_latched])
+                    if trained.gaps(index) < trained.fewest_gaps and kind.is_message])
 
 
 def _without_limit(judged: Judged) -> List[Unjudged]:
