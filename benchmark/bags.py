@@ -3,29 +3,25 @@
 
 Makes a bag of some 1.5 GB in a temporary folder, and runs in turn a bare `rosbag::View` iteration
 in C++, `rosbag.Bag.read_messages(raw=True)` in Python, `read_events` (how `train` reads its bags),
-and `train`: time, CPU time, and what they read of the bag. To measure the start of a program with
-its imports, it also runs every one without work. Needs `catkin_make bags_benchmark`.
+and `train`: time, and how much they read. To measure the start of a program with its imports, it
+also runs every one without work. Needs `catkin_make bags_benchmark`.
 
 Then it makes bags of many event types, and trains on them with one process and with two, in turn.
 """
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import statistics
 import sys
 import tempfile
-from pathlib import Path
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
-import bags_report
 import bags_robot
 import page
 import timers
 from programs import Usage, built, run
 
-_DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _SECONDS = 160.0
 _SEED = 1
 _JOBS = (1, 2)
@@ -36,6 +32,8 @@ _RAW = 'import sys, rosbag\nfor _ in rosbag.Bag(sys.argv[1]).read_messages(raw=T
 _EVENTS = ('import sys, self_awareness as s\n'
            's.read_events(sys.argv[1], s.EncodingRules.defaults())')
 _PIECE_BYTES = 1 << 20
+_NAMES = {'view': '`rosbag::View`, C++', 'read_messages': '`read_messages(raw=True)`, Python',
+          'read_events': '`read_events`', 'train': '`train`'}
 
 
 class Program(NamedTuple):
@@ -43,13 +41,6 @@ class Program(NamedTuple):
 
     work: List[str]
     start: List[str]
-
-
-def forget(path: str) -> None:
-    """Take a file out of the page cache."""
-    with open(path, 'rb') as file:
-        os.fsync(file.fileno())
-        os.posix_fadvise(file.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
 
 
 def warm(path: str) -> None:
@@ -78,7 +69,7 @@ def programs(bag: str, model: str) -> Dict[str, Program]:
 
 
 def measure(bag: str, model: str, rounds: int) -> Dict[str, Any]:
-    """Return the medians of every program, and what it reads of a bag that is in no cache."""
+    """Return the medians of every program, and how much it reads."""
     chosen = programs(bag, model)
     work: Dict[str, List[Usage]] = {name: [] for name in chosen}
     start: Dict[str, List[Usage]] = {name: [] for name in chosen}
@@ -87,20 +78,10 @@ def measure(bag: str, model: str, rounds: int) -> Dict[str, Any]:
         for name, program in chosen.items():
             start[name].append(run(program.start))
             work[name].append(run(program.work))
-    result = {}
-    for name, program in chosen.items():
-        forget(bag)
-        cold = run(program.work)
-        result[name] = {
-            'wall_s': _median(work[name], 'wall_s'),
-            'cpu_s': _median(work[name], 'cpu_s'),
-            'start_wall_s': _median(start[name], 'wall_s'),
-            'start_cpu_s': _median(start[name], 'cpu_s'),
-            'read_bytes': _median(work[name], 'read_bytes') - _median(start[name], 'read_bytes'),
-            'cold_disk_bytes': cold.disk_bytes,
-            'cold_wall_s': cold.wall_s,
-        }
-    return result
+    return {name: {
+        'wall_s': _median(work[name], 'wall_s'), 'start_wall_s': _median(start[name], 'wall_s'),
+        'read_bytes': _median(work[name], 'read_bytes') - _median(start[name], 'read_bytes')}
+            for name in chosen}
 
 
 def measure_images(folder: str, seconds: float, rounds: int) -> Dict[str, Any]:
@@ -130,22 +111,49 @@ def measure_jobs(folder: str, seconds: float, rounds: int) -> Dict[str, Any]:
                                 '--jobs', str(jobs)]))
     return dict(page.machine(), rounds=rounds, seconds=seconds, bags=_PARTS,
                 types=_PART_TYPES, messages=messages,
-                jobs={str(jobs): {'wall_s': _median(of_jobs, 'wall_s'),
-                                  'cpu_s': _median(of_jobs, 'cpu_s')}
+                jobs={str(jobs): {'wall_s': _median(of_jobs, 'wall_s')}
                       for jobs, of_jobs in usages.items()})
+
+
+def markdown(result: Dict[str, Any]) -> str:
+    """Return the section of docs/performance.md, with a line on --jobs if it was measured."""
+    programs = result['programs']
+    size = result['bag_bytes']
+    lines = [
+        f'{size / 1e9:.2f} GB with images, {result["messages"]:,} messages, in the page cache; in '
+        'brackets, times `rosbag::View`.', '',
+        '| | whole process | without start | read |', '|---|--:|--:|--:|']
+    for name, program in programs.items():
+        lines.append(f'| {_NAMES[name]} | {_time(programs, name, False)} '
+                     f'| {_time(programs, name, True)} '
+                     f'| {100 * program["read_bytes"] / size:.1f} % |')
+    return '\n'.join(lines) + (f'\n\n{_jobs(result["jobs"])}' if 'jobs' in result else '')
+
+
+def _jobs(result: Dict[str, Any]) -> str:
+    alone = result['jobs']['1']['wall_s']
+    return (f'`train` on {result["bags"]} bags of {result["types"]} event types, '
+            f'{result["messages"]:,} messages, {result["cores"]} cores: ' + ', '.join(
+                f'`--jobs {jobs}` {usage["wall_s"]:.2f} s ({alone / usage["wall_s"]:.2f})'
+                for jobs, usage in result['jobs'].items()) + '.')
+
+
+def _time(programs: Dict[str, Any], name: str, alone: bool) -> str:
+    def of(program: Dict[str, float]) -> float:
+        return program['wall_s'] - (program['start_wall_s'] if alone else 0.0)
+    seconds = of(programs[name])
+    return f'{seconds:.2f} s ({seconds / of(programs["view"]):.2f})'
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the benchmark; return the exit code."""
-    parser = argparse.ArgumentParser(description=__doc__.split('\n', 1)[0])
+    parser = page.parser('bags', __doc__.split('\n', 1)[0])
     parser.add_argument('--seconds', type=float, default=_SECONDS, metavar='S',
                         help=f'of the bag with images, 10 MB each (default: {_SECONDS:g})')
     parser.add_argument('--rounds', type=int, default=11, metavar='N',
                         help='runs of every program, in turn (default: 11)')
     parser.add_argument('--folder', default=tempfile.gettempdir(), metavar='DIR',
                         help='where the bag is made (default: %(default)s)')
-    parser.add_argument('--output', type=Path, default=_DOCS, metavar='DIR',
-                        help='where performance.md and performance/bags.json are (default: docs)')
     parser.add_argument('--only', choices=('images', 'jobs'),
                         help='measure one part again; the other one stays as bags.json has it')
     parser.add_argument('--part-seconds', type=float, default=_PART_SECONDS, metavar='S',
@@ -159,8 +167,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
             result.update(measure_images(folder, arguments.seconds, arguments.rounds))
         if arguments.only != 'images':
             result['jobs'] = measure_jobs(folder, arguments.part_seconds, arguments.rounds)
-    page.publish('bags', result, bags_report.markdown(result), arguments.output)
-    print(bags_report.markdown(result))
+    page.publish('bags', result, markdown(result), arguments.output)
+    print(markdown(result))
     return 0
 
 

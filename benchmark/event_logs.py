@@ -2,18 +2,15 @@
 """Benchmark of event logs: an hour of the simulated robot as a bag and as a log of its events."""
 from __future__ import annotations
 
-import argparse
 import os
 import tempfile
 import time
-from pathlib import Path
 from typing import Any, Callable, Dict
 
 import page
 from self_awareness import EncodingRules, EventLogWriter, read_events
 from self_awareness.commands import simulate
 
-_DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _SECONDS = 3600
 _SEED = 5
 _RUNS = 5
@@ -53,31 +50,16 @@ def measure() -> Dict[str, Any]:
 
 
 def markdown(result: Dict[str, Any]) -> str:
-    """Return the results as a table."""
+    """Return the results in a sentence."""
     events, seconds = result['events'], result['seconds']
     writing = result['convert_s'] - result['read_bag_s']
-    return '\n'.join([
-        f'{seconds / 3600:g} h of the simulated robot (seed {result["seed"]}), {events:,} events, '
-        f'{events / seconds:.0f} a second; the least processor time of {result["runs"]} runs.',
-        '',
-        '| | |',
-        '|---|---:|',
-        f'| an event in the log | {result["bytes"] / events:.2f} bytes |',
-        f'| a day | {result["bytes"] * _DAY_S / seconds / 1e6:.1f} MB |',
-        f'| an event in the bag | {result["bag_bytes"] / events:.0f} bytes |',
-        f'| packing and writing an event | {1e9 * writing / events:.0f} ns, '
-        f'{100 * writing / seconds:.4f} % of a core |',
-        f'| reading an event from the log | {1e9 * result["read_log_s"] / events:.0f} ns |',
-        f'| reading an event from the bag | {1e9 * result["read_bag_s"] / events:.0f} ns |',
-    ])
-
-
-def main() -> None:
-    """Measure, and write the results into the page."""
-    argparse.ArgumentParser(description=__doc__).parse_args()
-    result = measure()
-    page.publish('event_logs', result, markdown(result), _DOCS)
+    return (f'{events / seconds:.0f} events a second: {result["bytes"] / events:.2f} bytes an '
+            f'event ({result["bag_bytes"] / events:.0f} in a bag), '
+            f'{result["bytes"] * _DAY_S / seconds / 1e6:.0f} MB a day; written in '
+            f'{1e9 * writing / events:.0f} ns ({100 * writing / seconds:.4f} % of a core), read '
+            f'in {1e9 * result["read_log_s"] / events:.0f} ns '
+            f'({1e9 * result["read_bag_s"] / events:.0f} from a bag).')
 
 
 if __name__ == '__main__':
-    main()
+    page.run('event_logs', __doc__, measure, markdown)

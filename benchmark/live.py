@@ -7,7 +7,6 @@ live_benchmark`; runs a master of its own on the loopback interface.
 """
 from __future__ import annotations
 
-import argparse
 import bisect
 import contextlib
 import json
@@ -22,18 +21,17 @@ from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 import rospy
 from sensor_msgs.msg import Imu
 
-import live_report
 import page
-from live_robot import Configuration, Robot, master, train, write_synthetic_model
+from live_robot import LOAD_CORE, Configuration, Robot, pin, train, write_synthetic_model
 from live_subjects import Bare, Monitor, Record, Subject, usage
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.stamps import SECOND_NS
+from self_awareness_evaluation.live.master import own_master
 from self_awareness_evaluation.live.processes import Processes
 
 TOPICS = {163: 15, 1000: 60, 5000: 300, 20000: 500}
 """By messages a second."""
 
-_DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _WARM_UP_S = 2.0
 _MODEL_S = {163: 40.0, 1000: 40.0, 5000: 90.0, 20000: 20.0}
 _DETECTION_RATE = 5000
@@ -198,37 +196,70 @@ def _await_quiet(monitor: Monitor, seconds: float) -> None:
             return
 
 
+def markdown(result: Dict[str, Any]) -> str:
+    """Return the section of docs/performance.md."""
+    return '\n'.join([*_costs(result), '', *_latency(result['latency'])])
+
+
+def _costs(result: Dict[str, Any]) -> Iterator[str]:
+    yield '| messages/s | topics | bare | `rosbag record` | monitor | / bare | MB |'
+    yield '|--:' * 7 + '|'
+    configurations = _by_configuration(result['costs'])
+    for rate, topics in dict.fromkeys(key[:2] for key in configurations):
+        rows = [configurations[key] for key in sorted(configurations) if key[:2] == (rate, topics)]
+        cells = ['; '.join(f'{100 * row[name]["cpu_share"]:.1f}' for row in rows)
+                 for name in ('bare', 'record', 'monitor')]
+        cells.append('; '.join(f'{row["monitor"]["cpu_share"] / row["bare"]["cpu_share"]:.2f}'
+                               for row in rows))
+        cells.append('; '.join(f'{row["monitor"]["peak_bytes"] / 1e6:.0f}' for row in rows))
+        yield f'| {rate:,} | {topics} | {" | ".join(cells)} |'
+    dropped = sum(row['dropped'] for row in result['costs'] if row['subject'] == 'monitor')
+    yield ''
+    yield f'Missed by the monitor: {dropped:.0f}.'
+
+
+def _by_configuration(costs: List[Dict[str, Any]]
+                      ) -> Dict[Tuple[int, int, bool], Dict[str, Dict[str, Any]]]:
+    configurations: Dict[Tuple[int, int, bool], Dict[str, Dict[str, Any]]] = {}
+    for row in costs:
+        key = (row['rate'], row['topics'], row['image'])
+        configurations.setdefault(key, {})[row['subject']] = row
+    return configurations
+
+
+def _latency(latency: Dict[str, Any]) -> Iterator[str]:
+    yield f'At {latency["rate"]:,} messages/s on {latency["topics"]} topics, median (at most):'
+    yield ''
+    for what, key in (('message to the verdict on its window', 'message_s'),
+                      ('end of a window to its verdict', 'verdict_s')):
+        yield f'- {what}: {_ms(latency[key]["median"])} ({_ms(latency[key]["most"])})'
+    types, loaded_s = list(latency['loaded_s'].items())[-1]
+    for what, seconds in (('`kill -9` to the alarm', latency['alarm_s']),
+                          ('start until connected', latency['connected_s']),
+                          (f'start until a model of {types} types is loaded', loaded_s)):
+        yield f'- {what}: {_ms(statistics.median(seconds))} ({_ms(max(seconds))})'
+
+
+def _ms(seconds: float) -> str:
+    return f'{1000 * seconds:.3g} ms' if seconds < 1 else f'{seconds:.2f} s'
+
+
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the benchmark; return the exit code."""
-    arguments = _parser().parse_args(argv)
-    with tempfile.TemporaryDirectory(dir='/dev/shm') as name:
-        folder = Path(name)
-        with master(folder) as processes, _node():
-            benchmark = _Benchmark(folder, processes, arguments.seconds, arguments.rounds)
-            result = benchmark.run(arguments.rates)
-    if set(arguments.rates) == set(TOPICS):
-        page.publish('live', result, live_report.markdown(result), arguments.output)
-    return 0
-
-
-@contextlib.contextmanager
-def _node() -> Iterator[None]:
-    rospy.init_node('benchmark', disable_signals=True, disable_rosout=True)
-    try:
-        yield
-    finally:
-        rospy.signal_shutdown('the benchmark is over')
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='benchmark live', description=__doc__)
+    parser = page.parser('live', __doc__)
     parser.add_argument('--rates', type=int, nargs='+', default=list(TOPICS),
                         choices=list(TOPICS), metavar='N', help='messages a second')
     parser.add_argument('--seconds', type=float, default=10.0, help='of each measurement')
     parser.add_argument('--rounds', type=int, default=3, help='of all subjects, in turn')
-    parser.add_argument('--output', type=Path, default=_DOCS, metavar='FOLDER',
-                        help='for performance/live.json and performance.md (default: docs)')
-    return parser
+    arguments = parser.parse_args(argv)
+    with tempfile.TemporaryDirectory(dir='/dev/shm') as name:
+        folder = Path(name)
+        with own_master(folder, 'benchmark', pin(LOAD_CORE)) as processes:
+            benchmark = _Benchmark(folder, processes, arguments.seconds, arguments.rounds)
+            result = benchmark.run(arguments.rates)
+    if set(arguments.rates) == set(TOPICS):
+        page.publish('live', result, markdown(result), arguments.output)
+    return 0
 
 
 if __name__ == '__main__':

@@ -1,4 +1,4 @@
-"""The robot of the live benchmark: a master, ten nodes that publish, and a model of them."""
+"""The robot of the live benchmark: ten nodes that publish, and a model of them."""
 from __future__ import annotations
 
 import contextlib
@@ -7,14 +7,14 @@ import signal
 import subprocess
 import time
 from pathlib import Path
-from typing import IO, Iterator, List, NamedTuple, Sequence
+from typing import IO, List, NamedTuple, Sequence
 
 import numpy as np
 
 from self_awareness import (EncodingRules, EventType, Calibration, EvidenceModel,
                             Learner, TrainedModel)
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.live.processes import Processes, await_condition, free_port
+from self_awareness_evaluation.live.processes import Processes
 
 NODES = 10
 IMAGE_TOPIC = '/camera/image'
@@ -25,7 +25,6 @@ SUBJECT_CORE = 0
 """Core of the program that is measured; nothing else runs on it."""
 
 _PROGRAM = 'live_load'
-_STARTED_WITHIN_S = 60.0
 _TRAINING_WITHIN_S = 900.0
 _NEVER_REACHED = 1e6
 _SYNTHETIC_EVENTS = 300
@@ -46,24 +45,6 @@ class Configuration(NamedTuple):
 def pin(core: int, *command: str) -> List[str]:
     """Return the command as it runs on one core."""
     return ['taskset', '-c', str(core), *command]
-
-
-@contextlib.contextmanager
-def master(folder: Path) -> Iterator[Processes]:
-    """Run a master on a free port of the loopback interface; programs that start later find it."""
-    port = free_port()
-    os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1',
-                      ROS_LOG_DIR=str(folder / 'log'))
-    os.environ.pop('ROS_HOSTNAME', None)
-    with Processes(folder) as processes:
-        processes.start('roscore', *pin(LOAD_CORE, 'roscore', '-p', str(port)))
-        await_condition('the master answers', _master_answers, _STARTED_WITHIN_S)
-        yield processes
-
-
-def _master_answers() -> bool:
-    return subprocess.run(['rosnode', 'list'], stdout=subprocess.DEVNULL,
-                          stderr=subprocess.DEVNULL, check=False).returncode == 0
 
 
 class Robot:

@@ -6,7 +6,6 @@ events are those of timers.py: timers of 50 ms to 2 s with chains of two answers
 """
 from __future__ import annotations
 
-import argparse
 import itertools
 import json
 import os
@@ -16,13 +15,12 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Any, Dict, List
+from typing import Any, Dict
 
 import page
 from self_awareness import EventType, Learner, TrainedModel, half_of
 from timers import SIZES, events_of
 
-_DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _SECONDS = 60.0
 _LOADS = 5
 
@@ -84,37 +82,20 @@ def measure() -> Dict[str, Any]:
 
 
 def markdown(result: Dict[str, Any]) -> str:
-    """Return the table."""
-    rows: List[List[str]] = []
-    for types, row in result['models'].items():
-        rows.append([types, f'{row["events"]:,}', f'{row["train_s"]:.3g}',
-                     f'{row["train_peak_bytes"] / 1e6:.0f}', f'{row["file_bytes"] / 1e6:.3g}',
-                     f'{row["save_s"]:.3g}', f'{row["watched"]["load_s"]:.3g}',
-                     f'{row["watched"]["load_bytes"] / 1e6:.3g}', f'{row["all"]["load_s"]:.3g}',
-                     f'{row["all"]["load_bytes"] / 1e6:.3g}'])
-    return page.table(('event types', 'events', 'training [s]', 'peak [MB]', 'file [MB]',
-                       'saving [s]', 'loading what is watched [s]', '[MB]', 'loading all [s]',
-                       '[MB]'), rows)
+    """Return the line about the largest model."""
+    types, row = list(result['models'].items())[-1]
+    watched = row['watched']
+    return (f'{types} event types, {row["events"]:,} events: trained in {row["train_s"]:.2g} s '
+            f'with {row["train_peak_bytes"] / 1e6:.0f} MB, saved in {row["save_s"]:.2g} s to '
+            f'{row["file_bytes"] / 1e6:.3g} MB. What is watched is loaded in '
+            f'{watched["load_s"]:.2g} s to {watched["load_bytes"] / 1e6:.3g} MB; all, in '
+            f'{row["all"]["load_s"]:.2g} s to {row["all"]["load_bytes"] / 1e6:.3g} MB.')
 
 
-def main() -> None:
-    """Run the benchmark, or one of its parts that run in their own processes."""
-    parser = argparse.ArgumentParser(prog='benchmark models', description=__doc__)
-    parser.add_argument('--output', type=Path, default=_DOCS, metavar='FOLDER',
-                        help='for performance/models.json and performance.md (default: docs)')
-    parser.add_argument('--train', nargs=2, help=argparse.SUPPRESS)
-    parser.add_argument('--load', help=argparse.SUPPRESS)
-    parser.add_argument('--load-watched', help=argparse.SUPPRESS)
-    arguments = parser.parse_args()
-    if arguments.train:
-        print(json.dumps(_train(int(arguments.train[0]), arguments.train[1])))
-    elif arguments.load or arguments.load_watched:
-        print(json.dumps(_load(arguments.load or arguments.load_watched,
-                               arguments.load is None)))
+if __name__ == '__main__':  # or one of its parts, in a process of its own
+    if sys.argv[1:2] == ['--train']:
+        print(json.dumps(_train(int(sys.argv[2]), sys.argv[3])))
+    elif sys.argv[1:2] and sys.argv[1].startswith('--load'):
+        print(json.dumps(_load(sys.argv[2], sys.argv[1] == '--load-watched')))
     else:
-        result = measure()
-        page.publish('models', result, markdown(result), arguments.output)
-
-
-if __name__ == '__main__':
-    main()
+        page.run('models', __doc__, measure, markdown)

@@ -12,13 +12,10 @@ class Usage(NamedTuple):
     """What a process used, in all its threads."""
 
     wall_s: float
-    cpu_s: float
     peak_bytes: int
     """The most of its memory that was resident."""
     read_bytes: int
     """By read(2), from any file."""
-    disk_bytes: int
-    """From the disk."""
 
 
 def run(command: Sequence[str]) -> Usage:
@@ -37,8 +34,7 @@ def run(command: Sequence[str]) -> Usage:
     process.returncode = status
     if status != 0:
         raise RuntimeError(f'{" ".join(command)} failed')
-    return Usage(wall, usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss,
-                 int(io['rchar']), int(io['read_bytes']))
+    return Usage(wall, 1024 * usage.ru_maxrss, int(io['rchar']))
 
 
 def built(name: str) -> str:

@@ -6,7 +6,6 @@ load it; these come from python3-selenium and chromium-driver.
 """
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import re
@@ -23,7 +22,6 @@ import page
 import timers
 from programs import run
 
-_DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _TYPES = 500
 _SECONDS = 3600.0
 _TRAINED_S = 300
@@ -89,7 +87,7 @@ def measure() -> Dict[str, Any]:
 
 
 def markdown(result: Dict[str, Any]) -> str:
-    """Return the table."""
+    """Return the medians of all runs."""
     def median(*keys: str) -> float:
         values = []
         for value in result['measured']:
@@ -98,31 +96,16 @@ def markdown(result: Dict[str, Any]) -> str:
             values.append(value)
         return statistics.median(values)
 
-    rows = [
-        ['`score`', f'{median("score", "wall_s"):.1f} s'],
-        ['`score --report`', f'{median("report", "wall_s"):.1f} s'],
-        ['its memory at most', f'{median("report", "peak_bytes") / 1e6:.0f} MB'],
-        ['the page', f'{result["report_bytes"] / 1e6:.1f} MB'],
-        ['without plotly.js, data alone', f'{result["data_bytes"] / 1e6:.2f} MB'],
-        ['loaded and drawn by Chromium in', f'{median("load_s"):.1f} s']]
     return (f'{result["messages"]:,} messages of {result["types"]} event types in '
-            f'{result["seconds"] / 60:.0f} minutes, {result["incidents"]} incidents; '
-            f'median of {result["runs"]} runs.\n\n' + page.table(('', ''), rows))
-
-
-def main() -> None:
-    """Run the benchmark."""
-    parser = argparse.ArgumentParser(prog='benchmark report', description=__doc__)
-    parser.add_argument('--output', type=Path, default=_DOCS, metavar='FOLDER',
-                        help='for performance/report.json and performance.md (default: docs)')
-    parser.add_argument('--write', help=argparse.SUPPRESS)
-    arguments = parser.parse_args()
-    if arguments.write:
-        print(_write(arguments.write))
-        return
-    result = measure()
-    page.publish('report', result, markdown(result), arguments.output)
+            f'{result["seconds"] / 60:.0f} minutes: `score` {median("score", "wall_s"):.1f} s, '
+            f'with `--report` {median("report", "wall_s"):.1f} s and '
+            f'{median("report", "peak_bytes") / 1e6:.0f} MB of memory; the page '
+            f'{result["report_bytes"] / 1e6:.1f} MB ({result["data_bytes"] / 1e6:.2f} of data), '
+            f'drawn in {median("load_s"):.1f} s.')
 
 
 if __name__ == '__main__':
-    main()
+    if sys.argv[1:2] == ['--write']:
+        print(_write(sys.argv[2]))
+    else:
+        page.run('report', __doc__, measure, markdown)

@@ -1,10 +1,10 @@
-#include "allocated_bytes.h"
-
 #include <malloc.h>
 
 #include <atomic>
 #include <cstdlib>
 #include <new>
+
+#include "event_loop.h"
 
 namespace {
 

@@ -11,6 +11,9 @@
 
 namespace self_awareness::benchmarks {
 
+/// Memory that operator new has allocated and that is not yet freed [bytes], as malloc rounds it.
+std::size_t allocatedBytes();
+
 /// Repeats some events of a system, each round later by the time of one round.
 class EventLoop {
  public:
@@ -53,6 +56,16 @@ inline EventLoop loopOfEvents(std::size_t types) {
     events.push_back(system.next());
   }
   return EventLoop(std::move(events));
+}
+
+/// Statistics of a detector that know all event types of a system, and have counted nothing.
+template <typename Statistics, typename... Arguments>
+Statistics emptyStatistics(std::size_t types, Arguments... arguments) {
+  Statistics statistics(arguments...);
+  for (core::EventId id = 0; id < types; ++id) {
+    statistics.intern(SyntheticSystem::type(id));
+  }
+  return statistics;
 }
 
 /// Processor time of a training, without the time to make the events.

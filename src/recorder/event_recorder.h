@@ -40,7 +40,7 @@ namespace self_awareness {
 /// - `~robot_start` (double, seconds since 1970; default: now; 0 to 4294967295): when the robot
 ///   was started, for who starts the recorder more than once in a start of the robot.
 /// - `~robot` (string; default: empty): the robot's name, for a model that is learned from several
-///   robots (docs/fleet.md). Empty: the recordings do not say it.
+///   robots (docs/robots.md). Empty: the recordings do not say it.
 /// - `~diagnostics` (string; default: /diagnostics): topic of its status. If /diagnostics were
 ///   remapped, the recorder would not hear what the robot says there.
 /// - `~poll_interval`, `~queue_size`, `~diagnostic_period`: as those of the monitor.

@@ -4,10 +4,8 @@ from __future__ import annotations
 from typing import Callable, Dict
 
 from self_awareness_evaluation.detectors import Paper
-from self_awareness_evaluation.peers.frequency import (TOLERANCE, FrequencyMonitor,
-                                                       LearnedFrequencyMonitor)
-from self_awareness_evaluation.peers.gaps import GapMonitor
-from self_awareness_evaluation.systems import ScoringSystem, System
+from self_awareness_evaluation.peers import FrequencyMonitor, GapMonitor, LearnedFrequencyMonitor
+from self_awareness_evaluation.systems import System
 
 EVIDENCE = ('evidence', 'evidence_no_graph')
 """The evidence detector, with the graph of the robot and without."""
@@ -15,8 +13,8 @@ EVIDENCE = ('evidence', 'evidence_no_graph')
 _OTHERS: Dict[str, Callable[[], System]] = {
     'paper': Paper,
     'gaps': GapMonitor,
-    'frequency': lambda: ScoringSystem('frequency', FrequencyMonitor(), -TOLERANCE),
-    'frequency_learned': lambda: ScoringSystem('frequency_learned', LearnedFrequencyMonitor()),
+    'frequency': FrequencyMonitor,
+    'frequency_learned': LearnedFrequencyMonitor,
 }
 
 NAMES = (*EVIDENCE, *_OTHERS)

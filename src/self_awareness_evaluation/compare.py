@@ -2,20 +2,17 @@
 from __future__ import annotations
 
 import re
-from functools import partial
 from pathlib import Path
-from typing import Callable, Dict, List, Sequence, TypeVar
+from typing import Callable, Dict, List, Sequence
 
 from self_awareness.output_files import replacing
 from self_awareness_evaluation import pages, row_files
-from self_awareness_evaluation.figures import (SOON_S, WITHIN_S, Found, Quiet, grouped, normal,
-                                               of_fault)
-from self_awareness_evaluation.pages import written_by
-from self_awareness_evaluation.records import NORMAL, OWN, REAL
+from self_awareness_evaluation.figures import grouped
+from self_awareness_evaluation.records import NORMAL, REAL
 from self_awareness_evaluation.robots import family_of
 from self_awareness_evaluation.rows import Row
-from self_awareness_evaluation.sections.page import FULL, RESEARCH
-from self_awareness_evaluation.tables import NONE, alarms, counts, part, table
+from self_awareness_evaluation.pages import FULL, RESEARCH, written_by
+from self_awareness_evaluation.tables import NONE, cells, table
 
 NAME = 'before_after'
 
@@ -27,13 +24,12 @@ _INTRODUCTION = """\
 {written}
 
 What two versions of the detector say of the same records: same commands, same seeds. A cell with
-one value is the same in both; else it is before → **after**. Counts are of records; the time is
-the median latency of all of them, and is left out where fewer than half were found.
+one value is the same in both; else it is before → **after**. Counts are of records: found within
+5 s, and at all; the time is the median latency of all of them, and is left out where fewer than
+half were found. False alarms and WARN are those without a fault, before onsets included.
 """
 
-_Key = TypeVar('_Key')
 _Rows = List[Row]
-_Part = Callable[[Sequence[Row]], str]
 
 
 def write(output: Path, before: Path, after: Path, command: str) -> Path:
@@ -104,53 +100,29 @@ def _section(before: _Rows, after: _Rows) -> List[str]:
     same = sum(one == other for key in ours for one, other in zip(ours[key], theirs.get(key, [])))
     lines = [f'Rows that are the same to the last digit: {same} of '
              f'{max(len(before), len(after))}.', '']
-    kinds = list(grouped([row for row in [*before, *after] if row.fault != NORMAL],
-                         lambda row: row.fault))
-    if any(kind.startswith('crash:') for kind in kinds):
-        kinds.append('crash')
-    parts = _parts(kinds)
-    sides = [grouped(rows, _subject) for rows in (before, after)]
-    subjects = list(dict.fromkeys([*sides[0], *sides[1]]))
-    columns = [[_both(told, sides, subject) for told in parts.values()] for subject in subjects]
-    lines += table(['', *subjects], [[name, *cells] for name, *cells in zip(parts, *columns)])
-    of_families = [grouped(rows, lambda row: (_family(row), _subject(row)))
-                   for rows in (before, after)]
-    keys = list(dict.fromkeys([*of_families[0], *of_families[1]]))
-    if len({family for family, _ in keys}) > 1:
-        lines += ['', *table(['records', 'judged by', *parts], [
-            [*key, *(_both(told, of_families, key) for told in parts.values())] for key in keys])]
+    names = list(dict.fromkeys(row.fault for row in [*before, *after] if row.fault != NORMAL))
+    kinds = {name: [name] for name in [*names, *(['crash'] if any(
+        name.startswith('crash:') for name in names) else [])]}
+    columns = _compared(before, after, kinds, lambda _: '')
+    head, *body = ([column[row] for column in columns] for row in range(1, len(columns[0])))
+    lines += table(head, body)
+    if len({_family(row) for row in before}) > 1:
+        head, *body = _compared(before, after, kinds, _family)
+        lines += ['', *table(head, body)]
     return lines
 
 
-def _parts(kinds: Sequence[str]) -> Dict[str, _Part]:
-    """Return what is told of rows, by title."""
-    found: Dict[str, _Part] = {
-        'false alarms': lambda rows: alarms(_quiet(rows).alarms, _quiet(rows).hours),
-        'WARN': lambda rows: alarms(_quiet(rows).warnings, _quiet(rows).hours),
-        'alarm stands': lambda rows: f'{60.0 * sum(row.standing_hours for row in rows):.3g} min'}
-    for kind in kinds:
-        within_s = WITHIN_S if kind == 'crash' else (SOON_S, float('inf'))
-        found[kind] = _of_kind(kind, partial(_counts, within_s))
-        found[f'{kind}: guilty first'] = _of_kind(
-            kind, lambda each: part(each.first, in_percent=False))
-    found['guilty first, all'] = _of_kind('', lambda each: part(each.first, in_percent=False))
-    found['guilty at the end, all'] = _of_kind('', lambda each: part(each.at_end,
-                                                                     in_percent=False))
-    found['alarms after a restart'] = _of_kind(
-        '', lambda each: f'{each.after[0]} after {each.after[1]}' if each.after[1] else NONE)
-    return found
-
-
-def _counts(within_s: Sequence[float], found: Found) -> str:
-    return counts(found, *within_s)
-
-
-def _of_kind(kind: str, told: Callable[[Found], str]) -> _Part:
-    return lambda rows: told(Found.of(of_fault(rows, kind)))
-
-
-def _quiet(rows: Sequence[Row]) -> Quiet:
-    return Quiet.of(rows if rows[0].subject.part == OWN else normal(rows))
+def _compared(before: _Rows, after: _Rows, kinds: Dict[str, List[str]],
+              group: Callable[[Row], str]) -> List[List[str]]:
+    """Return a row of titles, and one for the records of each group and for who judged them."""
+    sides = [{key: cells(of_key, kinds) for key, of_key in grouped(
+        rows, lambda row: (group(row), _subject(row))).items()} for rows in (before, after)]
+    keys = list(dict.fromkeys([*sides[0], *sides[1]]))
+    titles = [title for title in next(iter(sides[0].values()))
+              if any(side[key][title].text != NONE for side in sides for key in side)]
+    return [['records', 'judged by', *titles],
+            *([*key, *(_both([side[key][title].text if key in side else NONE for side in sides])
+                       for title in titles)] for key in keys)]
 
 
 def _subject(row: Row) -> str:
@@ -164,6 +136,6 @@ def _family(row: Row) -> str:
     return row.subject.robot if row.subject.part == REAL else family_of(row.subject.robot)
 
 
-def _both(told: _Part, sides: Sequence[Dict[_Key, _Rows]], key: _Key) -> str:
-    before, after = (told(side[key]) if key in side else NONE for side in sides)
+def _both(texts: Sequence[str]) -> str:
+    before, after = texts
     return before if before == after else f'{before} → **{after}**'

@@ -11,18 +11,26 @@ from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, Alarm, DetectorP
                             TrainedModel, Tuning, Verdicts, fold_incidents, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
-from self_awareness_evaluation.systems import (ALARM, Judged, SystemAlarm, common_threshold,
-                                               distinct, required)
+from self_awareness_evaluation.systems import (ALARM, FALSE_POSITIVE_RATE, Judged, SystemAlarm,
+                                               common_threshold, required)
 from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness_follow_me.scenario import load_scenario
 
 
 class Paper:
-    """The paper's detector (`detector: paper`); silence scores 0."""
+    """The paper's detector (`detector: paper`); silence scores 0.
+
+    Args:
+        rate: share of the normal windows of the calibration that may score below the threshold.
+        most_silent: the largest share of them that may be silent; where more than `rate` are,
+            twice that share is taken, and so on, and where more than this, no window is abnormal.
+    """
 
     name = 'paper'
+    watched = None  # it judges all together
 
-    def __init__(self) -> None:
+    def __init__(self, rate: float = FALSE_POSITIVE_RATE, most_silent: float = 0.0) -> None:
+        self._rate, self._most_silent = rate, most_silent
         self._types: List[EventType] = []
         self._model: Optional[PaperModel] = None
         self._threshold: Optional[float] = None
@@ -41,8 +49,11 @@ class Paper:
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose s* by the common rule."""
         verdicts = [self._verdicts(recording.encoded(self._types)) for recording in recordings]
-        self._threshold = common_threshold(
-            [np.nan_to_num(verdict.score[~verdict.settling]) for verdict in verdicts])
+        scores = [np.nan_to_num(verdict.score[~verdict.settling]) for verdict in verdicts]
+        rate, self._threshold = self._rate, common_threshold(scores, self._rate)
+        while self._threshold <= 0.0 and 2.0 * rate <= self._most_silent:
+            rate *= 2.0
+            self._threshold = common_threshold(scores, rate)
 
     def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
@@ -108,10 +119,12 @@ class Evidence:
                          trained.graph)
 
     @property
-    def expected_per_hour(self) -> float:
-        """The false alarms an hour that the calibration expects; NaN: it does not say."""
-        calibration = None if self._trained is None else self._trained.calibration
-        return math.nan if calibration is None else calibration.false_alarms_per_hour
+    def expected_per_hour(self) -> Optional[float]:
+        """The false alarms an hour that the calibration expects; None: it does not say."""
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        expected = math.nan if trained.calibration is None \
+            else trained.calibration.false_alarms_per_hour
+        return None if math.isnan(expected) else expected
 
     @property
     def watched(self) -> Set[str]:
@@ -154,8 +167,8 @@ def judged_of(verdicts: Verdicts, event_types: Sequence[EventType], threshold: f
 
     def told(found: Sequence[Alarm]) -> List[SystemAlarm]:
         return [SystemAlarm(alarm.begin, alarm.end, alarm.over,
-                            distinct([event_types[suspect.id].source
-                                      for suspect in alarm.suspects]), alarm.evidence,
+                            list(dict.fromkeys(event_types[suspect.id].source
+                                               for suspect in alarm.suspects)), alarm.evidence,
                             alarm.level, alarm.culprit, alarm.kind, incidents.get(alarm.id))
                 for alarm in found]
 

@@ -10,7 +10,6 @@ from typing import Optional, Sequence
 from self_awareness.commands import cli
 from self_awareness_evaluation import compare, offline, options, pages, readme_numbers
 from self_awareness_evaluation.live import command as live
-from self_awareness_evaluation.page_section import write_section
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -26,14 +25,13 @@ def _compare(arguments: argparse.Namespace, command: str) -> None:
     print(f'written: {written}')
 
 
-def _pages(arguments: argparse.Namespace, command: str) -> None:
-    del command
+def _pages(arguments: argparse.Namespace, _: str) -> None:
     print('\n'.join(pages.check(arguments.docs)))
 
 
-def _numbers(arguments: argparse.Namespace, command: str) -> None:
-    del command
-    write_section(arguments.readme, readme_numbers.SECTION, readme_numbers.section(arguments.docs))
+def _numbers(arguments: argparse.Namespace, _: str) -> None:
+    pages.write_section(arguments.readme, readme_numbers.SECTION,
+                        readme_numbers.section(arguments.docs))
     print(f'written: {arguments.readme}')
 
 
@@ -53,25 +51,17 @@ def parser() -> argparse.ArgumentParser:
         compared.add_argument(name, type=Path, metavar=name.upper(),
                               help=f'folder of the results {told}, or of folders with them')
     live.add(parts)
-    _add_pages(parts.add_parser(
+    listed = parts.add_parser(
         'pages', help='which pages were measured with an older method',
         description='Lists the pages that a measurement wrote, with the version of the method, '
-        'and the command that measures those of an older method again.'))
-    _add_numbers(parts.add_parser(
+        'and the command that measures those of an older method again.')
+    listed.set_defaults(work=_pages)
+    numbers = parts.add_parser(
         'numbers', help='copy the numbers of the README out of these pages',
         description='Writes the measured numbers of the README again. They are cells of the '
-        'tables of the pages; src/self_awareness_evaluation/readme_numbers.py says which.'))
+        'tables of the pages; src/self_awareness_evaluation/readme_numbers.py says which.')
+    numbers.set_defaults(work=_numbers)
+    for each in (listed, numbers):
+        options.add(each, '--docs', Path, Path('docs'), 'DIR', 'folder of the pages')
+    options.add(numbers, '--readme', Path, Path('README.md'), 'FILE', 'the README')
     return parser
-
-
-def _add_pages(parser: argparse.ArgumentParser) -> None:
-    parser.set_defaults(work=_pages)
-    parser.add_argument('--docs', type=Path, default=Path('docs'), metavar='DIR',
-                        help='folder of the pages (default: docs)')
-
-
-def _add_numbers(parser: argparse.ArgumentParser) -> None:
-    _add_pages(parser)
-    parser.set_defaults(work=_numbers)
-    parser.add_argument('--readme', type=Path, default=Path('README.md'), metavar='FILE',
-                        help='the README (default: README.md)')

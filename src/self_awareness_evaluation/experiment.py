@@ -1,7 +1,6 @@
 """Lets variants learn from robots and judge their records, and keeps the rows."""
 from __future__ import annotations
 
-import math
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,7 +12,7 @@ from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.kept_rows import KeptRows
 from self_awareness_evaluation.records import NORMAL, FaultRecord, Learning, Robot
 from self_awareness_evaluation.rows import Row, Subject, fault_row, normal_row
-from self_awareness_evaluation.systems import System, required, watched_of
+from self_awareness_evaluation.systems import System, required
 from self_awareness_evaluation.variants import Variant
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
@@ -74,13 +73,14 @@ def _measured(_: None, unit: Unit) -> List[Row]:
     return list(unit.rows(unit))
 
 
-def measure(unit: Unit, robot: Robot) -> Iterator[Row]:
+def measure(robot_of: Callable[[], Robot], unit: Unit) -> Iterator[Row]:
     """Yield the rows of a unit that is a robot."""
+    robot = robot_of()
     judges = list(_judges(unit, robot))
     for recording in robot.normal():
         yield from (judge.normal_row(recording, robot) for judge in judges)
     for fault in robot.faults():
-        yield from (judge.fault_row(fault) for judge in judges if judge.faults)
+        yield from (judge.fault_row(fault) for judge in judges if judge.variant.faults)
 
 
 @dataclass(frozen=True)
@@ -89,24 +89,22 @@ class _Judge:
 
     Args:
         subject: see there.
+        variant: that the system is of.
         system: that judges.
-        faults: whether it judges records with a fault, too.
-        expected, refused: see Row.
-        watched: components that it watches; None: it judges all together.
+        refused: why it cannot; empty: it can.
     """
 
     subject: Subject
+    variant: Variant
     system: System
-    faults: bool
-    refused: str
-    expected: Optional[float]
-    watched: Optional[Set[str]]
+    refused: str = ''
 
     def normal_row(self, recording: WindowedEvents, robot: Robot) -> Row:
         """Return what it says of normal operation."""
         if self.refused:
             return Row(self.subject, NORMAL, refused=self.refused)
-        return normal_row(self.subject, self.system.judge(recording), self.expected,
+        expected = self.system.expected_per_hour if isinstance(self.system, Evidence) else None
+        return normal_row(self.subject, self.system.judge(recording), expected,
                           self._watched(robot.components), len(robot.components))
 
     def fault_row(self, fault: FaultRecord) -> Row:
@@ -117,7 +115,8 @@ class _Judge:
                          self._watched(set(fault.culprits)))
 
     def _watched(self, components: Set[str]) -> Optional[int]:
-        return None if self.watched is None else len(self.watched & components)
+        watched = self.system.watched
+        return None if watched is None else len(watched & components)
 
 
 def _judges(unit: Unit, robot: Robot) -> Iterator[_Judge]:
@@ -127,18 +126,10 @@ def _judges(unit: Unit, robot: Robot) -> Iterator[_Judge]:
         if learning not in learned_from:
             learned_from[learning] = robot.training(learning), robot.calibration(learning)
         training, calibration = learned_from[learning]
-        system = variant.make(robot.graph)
+        judge = _Judge(unit.subject(variant), variant, variant.make(robot.graph))
         try:
-            system.train(training)
-            system.calibrate(calibration)
+            judge.system.train(training)
+            judge.system.calibrate(calibration)
         except TooLittleError as error:
-            yield _Judge(unit.subject(variant), system, variant.faults, str(error), None, None)
-            continue
-        yield _Judge(unit.subject(variant), system, variant.faults, '', _expected(system),
-                     watched_of(system))
-
-
-def _expected(system: System) -> Optional[float]:
-    if not isinstance(system, Evidence) or math.isnan(system.expected_per_hour):
-        return None
-    return system.expected_per_hour
+            judge = replace(judge, refused=str(error))
+        yield judge

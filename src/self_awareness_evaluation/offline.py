@@ -5,24 +5,23 @@ import argparse
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Callable, Iterable, List, Optional, Sequence, Tuple
+from typing import Any, Callable, Iterable, List, Optional, Sequence, Tuple
 
 from self_awareness import Tuning
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
-from self_awareness_evaluation import catalogue, experiment, options, robots, tunings
+from self_awareness_evaluation import (catalogue, experiment, options, outages, pages, robots,
+                                       simulated, tunings)
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.families.kinds import DEFAULT, FAMILIES
 from self_awareness_evaluation.families.protocol import AFTER_DEATH_S, KINDS, check_hours
-from self_awareness_evaluation.recordings import outages
+from self_awareness_evaluation.pages import FULL, Section
 from self_awareness_evaluation.records import FAMILIES as OF_FAMILIES
 from self_awareness_evaluation.records import OWN, REAL, Learning
-from self_awareness_evaluation.robots import Amount, own_learning
+from self_awareness_evaluation.robots import own_learning
 from self_awareness_evaluation.rows import Row
-from self_awareness_evaluation.sections import ablation, families, own_robot, page
+from self_awareness_evaluation.sections import ablation, families, own_robot
 from self_awareness_evaluation.sections import recordings as real
-from self_awareness_evaluation.sections.page import Section
-from self_awareness_evaluation.simulated.records import default_faults
 from self_awareness_evaluation.variants import KINDS as CHANGES
 from self_awareness_evaluation.variants import Variant, one_by_one, side_by_side
 from self_awareness_follow_me.faults import effect_of
@@ -37,28 +36,98 @@ _AFTER_DEATH_S = 600.0  # of the ablation, which judges many times
 _OWN_CALIBRATION_S = 600.0
 
 
-def add(parts: 'argparse._SubParsersAction[argparse.ArgumentParser]') -> None:
+def add(parts: Any) -> None:
     """Add the measurements to the parts of the program."""
-    _add_simulated(parts.add_parser(
+    parser = parts.add_parser(
         'simulated', help='the simulated follow-me robot, in simulated time',
         description='Every system learns from the same records of the simulated robot, and judges '
-        'the same normal operation and the same faults, once for every seed.'))
-    _add_families(parts.add_parser(
+        'the same normal operation and the same faults, once for every seed.')
+    _add_common(parser, _simulated, 'seeds')
+    options.add(parser, '--seeds', cli.count, 20, 'N',
+                'number of repetitions, each with the next seed')
+    options.add(parser, '--seed', int, 1, 'N', 'the first seed')
+    options.add(parser, '--calibration', options.recorded_s, _OWN_CALIBRATION_S, 'S', 'length of '
+                'the record that the threshold is chosen by [s]; the paper has 100')
+    _add_systems(parser, catalogue.NAMES)
+    parser.add_argument('--faults', nargs='+', metavar='FAULT',
+                        help='kinds of faults (default: all, and every regular component crashed '
+                        'in turn)')
+
+    parser = parts.add_parser(
         'families', help='simulated robots as different as possible, drawn by seed',
         description='Every system learns from few starts of each robot and from many, watches '
-        'hours of normal operation in others, and judges every component\'s faults.'))
-    _add_recordings(parts.add_parser(
+        'hours of normal operation in others, and judges every component\'s faults.')
+    _add_robots(parser, _families, DEFAULT, '--robots', 3, 2.0)
+    options.add(parser, '--budgets', options.budget, [BUDGET], 'B', 'false alarms an hour that '
+                'limits are made for, in turn; faults are judged with the first')
+    _add_systems(parser, _OF_FAMILIES)
+    parser.add_argument('--faults', nargs='*', choices=_FAULTS, default=_FAULTS, metavar='FAULT',
+                        help=f'kinds of faults: {", ".join(_FAULTS)}; none at all if no name '
+                        'follows (default: all)')
+    parser.add_argument('--most', type=cli.count, metavar='N', help='faults of every kind, for '
+                        'each robot (default: of every component)')
+
+    parser = parts.add_parser(
         'recordings', help='recordings of real robots that others made',
-        description='The outages in recordings of real robots, and false alarms on them.'))
-    _add_ablation(parts.add_parser(
+        description='The outages in recordings of real robots, and false alarms on them.')
+    _add_common(parser, _recordings, 'recordings')
+    parser.add_argument('--data', type=Path, required=True, metavar='DIR',
+                        help='the folder of the recordings')
+    tunings.add(parser)
+
+    parser = parts.add_parser(
         'ablation', help='what each part of the evidence detector buys',
         description='Leaves out channel after channel, switches off rule after rule, halves and '
-        'doubles number after number, and judges the same robots and recordings each time.'))
+        'doubles number after number, and judges the same robots and recordings each time.')
+    _add_robots(parser, _ablation, _OF_ABLATION, '--seeds', 1, 1.0, ', for one robot after the '
+                'other')
+    options.add(parser, '--own-seeds', cli.count, 3, 'N', 'records of the own robot, likewise')
+    options.add(parser, '--faults', cli.count, 4, 'N', 'faults of every kind, for each of them')
+    parser.add_argument('--data', type=Path, metavar='DIR', help='the folder of the recordings of '
+                        'real robots (default: without them)')
+    parser.add_argument('--channels', nargs='*', metavar='CHANNEL',
+                        help='leave out these in turn, none if no name follows: '
+                        f'{", ".join(Tuning.channels())} (default: all)')
+    parser.add_argument('--numbers', nargs='*', metavar='NAME',
+                        help='change these in turn, none if no name follows; `info --tuning` '
+                        'lists them (default: all)')
+    parser.add_argument('--kinds', nargs='+', choices=CHANGES, default=CHANGES, metavar='KIND',
+                        help=f'changes of these only: {", ".join(CHANGES)}, where a rule is '
+                        'switched off by a number (default: all)')
+
+
+def _add_common(parser: argparse.ArgumentParser,
+                work: Callable[[argparse.Namespace, str], None], at_a_time: str) -> None:
+    parser.set_defaults(work=work)
+    options.add_output(parser, 'the sections of the pages, the figures and, in the folder '
+                       f'{FULL}, the rows, from which an interrupted run goes on,')
+    options.add_jobs(parser, f'{at_a_time} at a time')
+
+
+def _add_robots(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace, str], None],
+                names: Sequence[str], number: str, robots_each: int, hours: float,
+                in_turn: str = '') -> None:
+    """Add the options of robots of families; number: the option that says how many of each."""
+    _add_common(parser, work, 'robots')
+    options.add_families(parser, FAMILIES, names)
+    options.add(parser, number, cli.count, robots_each, 'N',
+                'robots of each family, each with the next seed')
+    options.add_seed(parser)
+    options.add_learning(parser, in_turn)
+    options.add(parser, '--hours', options.hours, hours, 'H',
+                'normal operation that is watched, for each robot')
+
+
+def _add_systems(parser: argparse.ArgumentParser, default: Sequence[str]) -> None:
+    parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES, default=default,
+                        metavar='SYSTEM', help='evaluate these only, the first one in most '
+                        f'tables: {", ".join(catalogue.NAMES)} (default: {" ".join(default)})')
+    tunings.add(parser)
 
 
 def _simulated(arguments: argparse.Namespace, command: str) -> None:
     scenario = load_scenario()
-    faults = tuple(arguments.faults or default_faults(scenario))
+    faults = tuple(arguments.faults or simulated.default_faults(scenario))
     for kind in faults:
         effect_of(scenario, kind)
     seeds = range(arguments.seed, arguments.seed + arguments.seeds)
@@ -69,7 +138,7 @@ def _simulated(arguments: argparse.Namespace, command: str) -> None:
 def _families(arguments: argparse.Namespace, command: str) -> None:
     check_hours(arguments.families, arguments.hours)
     faults = tuple(kind for kind in KINDS if kind.split()[0] in arguments.faults)
-    amount = Amount(arguments.hours, faults, arguments.most, AFTER_DEATH_S)
+    amount = arguments.hours, faults, arguments.most, AFTER_DEATH_S
     variants = _variants(arguments, _learnings(arguments), arguments.budgets)
     units = [_robot(family, seed, amount, variants) for family in arguments.families
              for seed in range(arguments.seed, arguments.seed + arguments.robots)]
@@ -77,17 +146,15 @@ def _families(arguments: argparse.Namespace, command: str) -> None:
 
 
 def _recordings(arguments: argparse.Namespace, command: str) -> None:
-    outages.check_data(arguments.data)
-    units = _real(arguments.data,
-                  side_by_side(list(outages.SYSTEMS), [None], tunings.of(arguments)))
-    _measure(real.NAME, units, '', arguments, command, real.section)
+    variants = side_by_side(list(outages.SYSTEMS), [None], tunings.of(arguments))
+    _measure(real.NAME, _real(arguments.data, variants), '', arguments, command, real.section)
 
 
 def _ablation(arguments: argparse.Namespace, command: str) -> None:
     variants = one_by_one(arguments.channels, arguments.numbers, arguments.kinds)
     check_hours(arguments.families, arguments.hours)
-    amount = Amount(arguments.hours, KINDS, arguments.faults, _AFTER_DEATH_S)
-    own_faults = tuple(kind for kind in default_faults(load_scenario())
+    amount = arguments.hours, KINDS, arguments.faults, _AFTER_DEATH_S
+    own_faults = tuple(kind for kind in simulated.default_faults(load_scenario())
                        if kind.split(':')[0] not in _WARNED_ONLY)
     units = _own(range(arguments.seed, arguments.seed + arguments.own_seeds), own_faults,
                  _learned(variants, own_learning(_OWN_CALIBRATION_S)))
@@ -97,7 +164,6 @@ def _ablation(arguments: argparse.Namespace, command: str) -> None:
               for shift in range(arguments.seeds)
               for turn, family in enumerate(arguments.families)]
     if arguments.data is not None:
-        outages.check_data(arguments.data)
         units += _real(arguments.data, variants)
     _measure(ablation.NAME, units, f'{amount}, own robot {own_faults}', arguments, command,
              partial(ablation.section, variants=variants))
@@ -106,10 +172,10 @@ def _ablation(arguments: argparse.Namespace, command: str) -> None:
 def _measure(name: str, units: Sequence[Unit], plan: str, arguments: argparse.Namespace,
              command: str, section: Callable[[Sequence[Row]], Section]) -> None:
     """Measure units, and write what they came to."""
-    path = page.rows_path(arguments.output, name)
+    path = pages.rows_path(arguments.output, name)
     path.parent.mkdir(parents=True, exist_ok=True)
     rows = experiment.run(units, path, plan, arguments.jobs)
-    for written in page.write(arguments.output, section(rows), rows, command):
+    for written in pages.write(arguments.output, section(rows), rows, command):
         print(f'written: {written}')
 
 
@@ -132,110 +198,16 @@ def _learnings(arguments: argparse.Namespace) -> List[Learning]:
 
 def _own(seeds: Iterable[int], faults: Tuple[str, ...],
          variants: Sequence[Variant]) -> List[Unit]:
-    def rows(seed: int, unit: Unit) -> Iterable[Row]:
-        return experiment.measure(unit, robots.own(seed, faults))
-
-    return [Unit(partial(rows, seed), OWN, f'{OWN} {seed}', tuple(variants)) for seed in seeds]
+    return [Unit(partial(experiment.measure, partial(robots.own, seed, faults)), OWN,
+                 f'{OWN} {seed}', tuple(variants)) for seed in seeds]
 
 
-def _robot(family: str, seed: int, amount: Amount, variants: Sequence[Variant]) -> Unit:
-    def rows(unit: Unit) -> Iterable[Row]:
-        return experiment.measure(unit, robots.of_family(family, seed, amount))
-
-    return Unit(rows, OF_FAMILIES, f'{family} {seed}', tuple(variants))
+def _robot(family: str, seed: int, amount: Tuple[Any, ...], variants: Sequence[Variant]) -> Unit:
+    return Unit(partial(experiment.measure, partial(robots.of_family, family, seed, *amount)),
+                OF_FAMILIES, f'{family} {seed}', tuple(variants))
 
 
 def _real(data: Path, variants: Sequence[Variant]) -> List[Unit]:
-    def rows(case: outages.Case, unit: Unit) -> Iterable[Row]:
-        return outages.rows(unit, case, data)
-
-    return [Unit(partial(rows, case), REAL, case.name, tuple(variants))
+    outages.check_data(data)
+    return [Unit(partial(outages.rows, case, data), REAL, case.name, tuple(variants))
             for case in outages.CASES]
-
-
-def _add_simulated(parser: argparse.ArgumentParser) -> None:
-    parser.set_defaults(work=_simulated)
-    _add_output(parser)
-    parser.add_argument('--seeds', type=cli.count, default=20, metavar='N',
-                        help='number of repetitions, each with the next seed (default: 20)')
-    parser.add_argument('--seed', type=int, default=1, help='the first seed (default: 1)')
-    parser.add_argument('--calibration', type=options.calibration_s, default=_OWN_CALIBRATION_S,
-                        metavar='S', help='length of the record that the threshold is chosen by '
-                        '[s]; the paper has 100 (default: 600)')
-    _add_systems(parser, catalogue.NAMES)
-    parser.add_argument('--faults', nargs='+', metavar='FAULT',
-                        help='kinds of faults (default: all, and every regular component crashed '
-                        'in turn)')
-    options.add_jobs(parser, 'seeds at a time')
-
-
-def _add_families(parser: argparse.ArgumentParser) -> None:
-    parser.set_defaults(work=_families)
-    _add_output(parser)
-    options.add_families(parser, FAMILIES, DEFAULT)
-    parser.add_argument('--robots', type=cli.count, default=3, metavar='N',
-                        help='robots of each family, each with the next seed (default: 3)')
-    parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
-    options.add_learning(parser, [2, 4])
-    parser.add_argument('--hours', type=options.hours, default=2.0, metavar='H',
-                        help='normal operation that is watched, for each robot (default: 2)')
-    parser.add_argument('--budgets', type=options.budget, nargs='+', default=[BUDGET],
-                        metavar='B', help='false alarms an hour that limits are made for, in '
-                        f'turn; faults are judged with the first (default: {BUDGET:g})')
-    _add_systems(parser, _OF_FAMILIES)
-    parser.add_argument('--faults', nargs='*', choices=_FAULTS, default=_FAULTS, metavar='FAULT',
-                        help=f'kinds of faults: {", ".join(_FAULTS)}; none at all if no name '
-                        'follows (default: all)')
-    parser.add_argument('--most', type=cli.count, metavar='N', help='faults of every kind, for '
-                        'each robot (default: of every component)')
-    options.add_jobs(parser, 'robots at a time')
-
-
-def _add_recordings(parser: argparse.ArgumentParser) -> None:
-    parser.set_defaults(work=_recordings)
-    _add_output(parser)
-    parser.add_argument('--data', type=Path, required=True, metavar='DIR',
-                        help='the folder of the recordings')
-    tunings.add(parser)
-    options.add_jobs(parser, 'recordings at a time')
-
-
-def _add_ablation(parser: argparse.ArgumentParser) -> None:
-    parser.set_defaults(work=_ablation)
-    _add_output(parser)
-    options.add_families(parser, FAMILIES, _OF_ABLATION)
-    parser.add_argument('--seeds', type=cli.count, default=1, metavar='N',
-                        help='robots of each family, each with the next seed (default: 1)')
-    parser.add_argument('--own-seeds', type=cli.count, default=3, metavar='N',
-                        help='the same for the records of the own robot (default: 3)')
-    parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
-    options.add_learning(parser, [2, 4], ', for one robot after the other')
-    parser.add_argument('--hours', type=options.hours, default=1.0, metavar='H',
-                        help='normal operation that is watched, for each robot of a family '
-                        '(default: 1)')
-    parser.add_argument('--faults', type=cli.count, default=4, metavar='N',
-                        help='faults of every kind, for each of them (default: 4)')
-    parser.add_argument('--data', type=Path, metavar='DIR', help='the folder of the recordings of '
-                        'real robots (default: without them)')
-    parser.add_argument('--channels', nargs='*', metavar='CHANNEL',
-                        help='leave out these in turn, none if no name follows: '
-                        f'{", ".join(Tuning.channels())} (default: all)')
-    parser.add_argument('--numbers', nargs='*', metavar='NAME',
-                        help='change these in turn, none if no name follows; `info --tuning` '
-                        'lists them (default: all)')
-    parser.add_argument('--kinds', nargs='+', choices=CHANGES, default=CHANGES, metavar='KIND',
-                        help=f'changes of these only: {", ".join(CHANGES)}, where a rule is '
-                        'switched off by a number (default: all)')
-    options.add_jobs(parser, 'robots at a time')
-
-
-def _add_output(parser: argparse.ArgumentParser) -> None:
-    options.add_output(parser, 'the sections of the pages, the figures and, in the folder '
-                       f'{page.FULL}, the rows, from which an interrupted run goes on,')
-
-
-def _add_systems(parser: argparse.ArgumentParser, default: Sequence[str]) -> None:
-    parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES, default=default,
-                        metavar='SYSTEM', help='evaluate these only, the first one in most '
-                        f'tables: {", ".join(catalogue.NAMES)} (default: {" ".join(default)})')
-    tunings.add(parser)

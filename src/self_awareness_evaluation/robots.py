@@ -1,41 +1,33 @@
-"""The robots that are simulated, and how much is recorded of each."""
+"""The robots that are simulated."""
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Optional, Tuple
 
+from self_awareness_evaluation import simulated
 from self_awareness_evaluation.detectors import scenario_graph
 from self_awareness_evaluation.families.protocol import AFTER_DEATH_S, KINDS, Records
 from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, Learning, Robot
-from self_awareness_evaluation.simulated import records as simulated
 from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness_follow_me.scenario import load_scenario
 
 
-@dataclass(frozen=True)
-class Amount:
-    """How much of a robot of a family is judged.
+def of_family(family: str, seed: int, hours: float, kinds: Tuple[str, ...] = KINDS,
+              most: Optional[int] = None, after_death_s: float = AFTER_DEATH_S) -> Robot:
+    """Return a robot of a family.
 
     Args:
+        family: one of kinds.FAMILIES.
+        seed: of the robot.
         hours: of normal operation.
-        faults: kinds, of protocol.KINDS.
+        kinds: of faults, of protocol.KINDS.
         most: faults of each kind; None: every component in turn.
         after_death_s: a record lasts for so long after the death of who speaks when asked [s].
     """
-
-    hours: float
-    faults: Tuple[str, ...] = KINDS
-    most: Optional[int] = None
-    after_death_s: float = AFTER_DEATH_S
-
-
-def of_family(family: str, seed: int, amount: Amount) -> Robot:
-    """Return a robot of a family, one of kinds.FAMILIES."""
     records = Records(family, seed)
     return Robot(
         FAMILIES, f'{family} {seed}', records.robot.sources, records.robot.graph,
-        records.training, records.calibration, lambda: records.watched(amount.hours),
-        lambda: records.faults(amount.faults, amount.most, amount.after_death_s))
+        records.training, records.calibration, lambda: records.watched(hours),
+        lambda: records.faults(kinds, most, after_death_s))
 
 
 def own(seed: int, faults: Tuple[str, ...]) -> Robot:

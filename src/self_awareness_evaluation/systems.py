@@ -1,9 +1,8 @@
 """What is evaluated: a system learns from recordings, and judges the windows of others."""
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import (List, Optional, Protocol, Sequence, Set, Tuple, TypeVar,
-                    runtime_checkable)
+from dataclasses import dataclass
+from typing import List, Optional, Protocol, Sequence, Set, Tuple, TypeVar
 
 import numpy as np
 
@@ -53,12 +52,6 @@ class SystemAlarm:
     def stands_at(self, time: int) -> bool:
         """Return whether it stands at a time [ns]."""
         return self.start <= time and (time < self.end or not self.cleared)
-
-    def shifted(self, time: int) -> SystemAlarm:
-        """Return the same that much later [ns]."""
-        incident = self.incident and (self.incident[0] + time, self.incident[1] + time,
-                                      self.incident[2])
-        return replace(self, start=self.start + time, end=self.end + time, incident=incident)
 
 
 @dataclass(frozen=True)
@@ -114,88 +107,10 @@ class System(Protocol):
     def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
 
-
-class Scorer(Protocol):
-    """The part of a peer that is its own: the score of a window."""
-
-    def train(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Learn from normal operation."""
-
-    def scores(self, recording: WindowedEvents) -> np.ndarray:
-        """Return the finite scores of the windows, low is abnormal."""
-
-    def suspects(self, recording: WindowedEvents, window: int) -> Optional[List[str]]:
-        """Return the sources to blame for a window, best first; None: it cannot tell."""
-
-
-@runtime_checkable
-class Watching(Protocol):
-    """What watches components one by one, and can say which."""
-
     @property
-    def watched(self) -> Set[str]:
-        """The sources whose death it would find, once it has learned and is calibrated."""
-
-
-class ScoringSystem:
-    """A system of a scorer: threshold and persistence are those of all others.
-
-    Args:
-        name: in the tables.
-        scorer: scores the windows.
-        threshold: None: chosen by the common rule; else the scorer's own, which stays.
-    """
-
-    def __init__(self, name: str, scorer: Scorer, threshold: Optional[float] = None) -> None:
-        self.name = name
-        self._scorer = scorer
-        self._own_threshold = threshold
-        self._threshold = threshold
-
-    @property
-    def scorer(self) -> Scorer:
-        """The part of it that is its own."""
-        return self._scorer
-
-    def train(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Learn from normal operation."""
-        self._scorer.train(recordings)
-
-    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Choose the threshold by the common rule, unless the system has its own."""
-        if self._own_threshold is None:
-            self._threshold = common_threshold(
-                [self._scorer.scores(recording)[~settling(recording)] for recording in recordings])
-
-    def judge(self, recording: WindowedEvents) -> Judged:
-        """Judge a recording.
-
-        Raises:
-            ValueError: the system is not calibrated.
-        """
-        threshold = required(self._threshold, self.name, 'calibrate')
-        start = recording.starts()
-        score = self._scorer.scores(recording)
-        abnormal = score < threshold
-        unsettled = settling(recording)
-        alarms = []
-        for alarm in persistent(start, abnormal & ~unsettled):
-            raised_in = int((alarm.start - start[0]) // DEFAULT_WINDOW) - 1
-            suspects = self._scorer.suspects(recording, raised_in)
-            alarms.append(replace(alarm, suspects=suspects, culprit=(suspects or [''])[0]))
-        return Judged(start, abnormal, score, unsettled, alarms, threshold)
-
-
-def watched_of(system: System) -> Optional[Set[str]]:
-    """Return the components that a system watches; None: it judges all together."""
-    of = system.scorer if isinstance(system, ScoringSystem) else system
-    return of.watched if isinstance(of, Watching) else None
-
-
-def watched_by(system: System, components: Set[str]) -> Optional[int]:
-    """Return how many of the components a system watches, likewise."""
-    watched = watched_of(system)
-    return None if watched is None else len(watched & components)
+    def watched(self) -> Optional[Set[str]]:
+        """The components whose death it would find, once it has learned and is calibrated; None:
+        it judges all together."""
 
 
 def required(value: Optional[_Value], name: str, step: str) -> _Value:
@@ -214,9 +129,9 @@ def required(value: Optional[_Value], name: str, step: str) -> _Value:
     return value
 
 
-def common_threshold(scores: Sequence[np.ndarray]) -> float:
-    """Return the threshold that FALSE_POSITIVE_RATE of the normal windows fall below."""
-    return Roc(np.concatenate(scores), []).level(FALSE_POSITIVE_RATE).cutoff
+def common_threshold(scores: Sequence[np.ndarray], rate: float) -> float:
+    """Return the threshold that this share of the normal windows falls below."""
+    return Roc(np.concatenate(scores), []).level(rate).cutoff
 
 
 def settling(recording: WindowedEvents) -> np.ndarray:
@@ -246,8 +161,3 @@ def persistent(start: np.ndarray, abnormal: np.ndarray) -> List[SystemAlarm]:
     if raised_at is not None:
         alarms.append(SystemAlarm(raised_at, end, False, None))
     return alarms
-
-
-def distinct(sources: Sequence[str]) -> List[str]:
-    """Return the sources in their order, each once."""
-    return list(dict.fromkeys(sources))

@@ -2,12 +2,19 @@
 from __future__ import annotations
 
 import math
-from typing import List, Sequence, Tuple
+from dataclasses import dataclass
+from typing import Dict, List, Mapping, Sequence, Tuple
 
-from self_awareness_evaluation.figures import Found, Quiet
+from self_awareness_evaluation.figures import SOON_S, Found, Quiet, of_fault
+from self_awareness_evaluation.rows import Row
 
 NONE = '–'
 """What a table says where there is nothing to tell."""
+
+LEAST_LATENCY_S = 0.05
+"""Medians that differ by less are told as the same [s]."""
+
+OTHER = 'other faults'
 
 
 def table(head: Sequence[str], body: Sequence[Sequence[str]]) -> List[str]:
@@ -36,11 +43,6 @@ def rate(quiet: Quiet) -> str:
     """Return the false alarms an hour with their interval."""
     low, high = quiet.interval
     return f'{number(quiet.per_hour)} ({number(low)} to {number(high)})'
-
-
-def alarms(count: int, hours: float) -> str:
-    """Return a number of alarms in some hours, as a rate, too."""
-    return f'{count} in {hours:.3g} h ({number(count / hours)}/h)' if hours else NONE
 
 
 def share(found: Found) -> str:
@@ -74,4 +76,50 @@ def part(of: Tuple[int, int], in_percent: bool = True) -> str:
 def interval(found: Found) -> str:
     """Return the 95 % interval of the share that was found."""
     low, high = found.interval()
-    return NONE if math.isnan(low) else f'{100.0 * low:.0f} to {100.0 * high:.0f} %'
+    return NONE if math.isnan(low) else f'{100.0 * low:.0f}–{100.0 * high:.0f} %'
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A figure of rows that are compared with others.
+
+    Args:
+        text: in a table.
+        values: that are compared.
+        same_within: by how much each may differ and still be told as the same.
+    """
+
+    text: str
+    values: Tuple[float, ...]
+    same_within: Tuple[float, ...]
+
+    def differs(self, other: Cell) -> bool:
+        """Return whether it is told as another one."""
+        return self.text != other.text and any(
+            one != two and not abs(one - two) <= within
+            for one, two, within in zip(self.values, other.values, self.same_within))
+
+
+def cells(rows: Sequence[Row], kinds: Mapping[str, Sequence[str]]) -> Dict[str, Cell]:
+    """Return the figures of rows by title; kinds: of faults, by title."""
+    quiet = Quiet.of(rows)
+    found = {'false alarms': Cell(f'{quiet.alarms} in {quiet.hours:.1f} h',
+                                  (quiet.alarms, quiet.hours), (0.0, 0.05)),
+             'WARN': Cell(str(quiet.warnings), (quiet.warnings,), (1.0,))}
+    known = [kind for names in kinds.values() for kind in names]
+    by_title = {title: [row for kind in names for row in of_fault(rows, kind)]
+                for title, names in kinds.items()}
+    by_title[OTHER] = [row for row in of_fault(rows, '')
+                       if not {row.fault, row.fault.partition(':')[0]} & set(known)]
+    for title, of_title in by_title.items():
+        each = Found.of(of_title)
+        found[title] = Cell(counts(each, SOON_S, math.inf),
+                            (each.within(SOON_S), each.within(), each.median_s),
+                            (0.0, 0.0, LEAST_LATENCY_S))
+    every = Found.of(of_fault(rows, ''))
+    after, records = every.after
+    found['alarms after a restart'] = Cell(f'{after} after {records}' if records else NONE,
+                                           (after,), (0.0,))
+    for title, named in (('guilty first', every.first), ('guilty at the end', every.at_end)):
+        found[title] = Cell(part(named, in_percent=False), (named[1] - named[0],), (0.0,))
+    return found

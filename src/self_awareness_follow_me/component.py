@@ -88,7 +88,7 @@ class Component:
         self._spec = spec
         self._rng = rng
         self._clock = clock
-        self._spec_at = spec_at
+        self._spec_at = spec_at or (lambda _: spec)
         self._steps: Deque[_Step] = deque()
         # The newest waiting message of each task, in the order in which the tasks were asked for.
         self._waiting: Dict[int, Optional[Message]] = {}
@@ -144,14 +144,14 @@ class Component:
         requests = self._adapt(now)
         step = self._steps.popleft()
         message = self._message(step, now)
-        requests += [Publish(message, nanoseconds(self._spec.delay), self._is_lost())
+        lost = self._spec.lost
+        requests += [Publish(message, nanoseconds(self._spec.delay),
+                             lost > 0.0 and self._rng.random() < lost)
                      for _ in range(step.output.copies)]
         return requests + (self._work() if self._steps else self._next(now))
 
     def _adapt(self, now: int) -> List[Request]:
         """Go over to what is to be done at the time `now`; start the timers of what is new."""
-        if self._spec_at is None:
-            return []
         spec = self._spec_at(now)
         if spec is self._spec:
             return []
@@ -212,9 +212,6 @@ class Component:
             message = replace(message, value=before.value, content=before.content)
         self._published[message.topic] = message
         return message
-
-    def _is_lost(self) -> bool:
-        return self._spec.lost > 0.0 and self._rng.random() < self._spec.lost
 
     def _value(self, step: _Step) -> Optional[Value]:
         if step.action is not None:

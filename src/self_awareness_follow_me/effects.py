@@ -6,8 +6,8 @@ Times of the file are seconds, others int ns.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
-from typing import Any, Callable, Optional, Tuple
+from dataclasses import dataclass, field, replace
+from typing import Any, Callable, Mapping, Optional, Tuple
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_follow_me.component_spec import ComponentSpec, Task
@@ -86,9 +86,20 @@ class Intruder(Effect):
 
 @dataclass(frozen=True)
 class Change(Effect):
-    """Some components live on, but do something else than they should."""
+    """Some components live on, but do something else than they should.
+
+    Args:
+        components: their names.
+        settings: properties of ComponentSpec that they have instead: their messages come late, and
+            so on.
+        other: how each task is done: halved, doubled or disordered; None: as ever.
+        more: tasks besides, of messages that were never seen before.
+    """
 
     components: Tuple[str, ...]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    other: Optional[Callable[[Task], Task]] = None
+    more: Tuple[Task, ...] = ()
 
     @property
     def culprits(self) -> Tuple[str, ...]:
@@ -103,57 +114,8 @@ class Change(Effect):
         """
         if spec.name not in self.components:
             return spec
-        return self._changed(spec)
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        raise NotImplementedError
-
-
-@dataclass(frozen=True)
-class Setting(Change):
-    """A property of ComponentSpec that only faults have is set: its messages come late, and so on.
-
-    Args:
-        name: of the property.
-        value: of it.
-    """
-
-    name: str
-    value: Any = True
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, **{self.name: self.value})
-
-
-@dataclass(frozen=True)
-class OtherTasks(Change):
-    """Each task is done in another way.
-
-    Args:
-        other: halved, doubled or disordered.
-    """
-
-    other: Callable[[Task], Task]
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, tasks=tuple(self.other(task) for task in spec.tasks))
-
-
-class Deafness(Change):
-    """A component does not subscribe to the first topic of those that it only `hears`."""
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, hears=spec.hears[1:])
-
-
-@dataclass(frozen=True)
-class Novelty(Change):
-    """A component publishes what it always does, and messages that were never seen before."""
-
-    task: Task
-
-    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
-        return replace(spec, tasks=spec.tasks + (self.task,))
+        tasks = spec.tasks if self.other is None else tuple(map(self.other, spec.tasks))
+        return replace(spec, tasks=tasks + self.more, **self.settings)
 
 
 @dataclass(frozen=True)
@@ -164,11 +126,11 @@ class Faults:
     cc2: Crash
     rs: Starvation
     ac: ClockDrift
-    lat: Setting
+    lat: Change
     extra: Intruder
-    order: OtherTasks
-    unknown: Novelty
-    lossy: Setting
+    order: Change
+    unknown: Change
+    lossy: Change
 
 
 class Induced:

@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Callable, Dict, Optional, Tuple
 
 from self_awareness_follow_me.component_spec import ComponentSpec
-from self_awareness_follow_me.effects import (Crash, Deafness, Effect, OtherTasks, Setting,
-                                              Silence, doubled, halved)
+from self_awareness_follow_me.effects import Change, Crash, Effect, Silence, doubled, halved
 from self_awareness_follow_me.messages import MessageType
 from self_awareness_follow_me.scenario import Scenario
 
@@ -92,27 +91,23 @@ def _double_rate(_: Scenario, spec: ComponentSpec) -> Effect:
         if busy > period / 2.0:
             raise ValueError(f'{spec.name!r} is busy for {busy:g} s every {period:g} s '
                              'and cannot do that twice as often; choose another component')
-    return OtherTasks((spec.name,), doubled)
+    return Change((spec.name,), other=doubled)
 
 
-def _staleness(_: Scenario, spec: ComponentSpec) -> Effect:
-    if not any(MessageType(output.datatype).has_stamp for output in spec.outputs().values()):
-        raise ValueError(f'no message of {spec.name!r} has a stamp; choose another component')
-    return Setting((spec.name,), 'stale')
-
-
-def _emptiness(_: Scenario, spec: ComponentSpec) -> Effect:
-    if not any(MessageType(output.datatype).has_list for output in spec.outputs().values()):
-        raise ValueError(f'no message of {spec.name!r} has a list that can be empty; choose '
-                         'another component')
-    return Setting((spec.name,), 'empty')
+def _of_messages(setting: str, is_one: Callable[[MessageType], bool], what: str
+                 ) -> Callable[[Scenario, ComponentSpec], Effect]:
+    def effect(_: Scenario, spec: ComponentSpec) -> Effect:
+        if not any(is_one(MessageType(output.datatype)) for output in spec.outputs().values()):
+            raise ValueError(f'no message of {spec.name!r} has {what}; choose another component')
+        return Change((spec.name,), {setting: True})
+    return effect
 
 
 def _deafness(_: Scenario, spec: ComponentSpec) -> Effect:
     if not spec.hears:
         raise ValueError(f'{spec.name!r} hears nothing that it could miss and go on; choose '
                          'another component')
-    return Deafness((spec.name,))
+    return Change((spec.name,), {'hears': spec.hears[1:]})
 
 
 _KINDS: Dict[str, _Kind] = {
@@ -125,19 +120,21 @@ _KINDS: Dict[str, _Kind] = {
     'lat': _Kind('components answer later, at an unchanged rate', lambda robot: robot.faults.lat,
                  lambda robot, spec: replace(robot.faults.lat, components=(spec.name,))),
     'half': _Kind('a component works at half its rate',
-                  of=lambda _, spec: OtherTasks((spec.name,), halved)),
+                  of=lambda _, spec: Change((spec.name,), other=halved)),
     'double': _Kind('a component publishes twice as often', of=_double_rate),
     'extra': _Kind("a foreign node publishes on a component's topic",
                    lambda robot: robot.faults.extra),
     'order': _Kind('a component publishes in reversed order', lambda robot: robot.faults.order),
     'unknown': _Kind('a component publishes what was never seen before',
                      lambda robot: robot.faults.unknown),
-    'stale': _Kind('a component repeats a stamp for ever, at an unchanged rate', of=_staleness),
+    'stale': _Kind('a component repeats a stamp for ever, at an unchanged rate',
+                   of=_of_messages('stale', lambda kind: kind.has_stamp, 'a stamp')),
     'lossy': _Kind('a share of what a component publishes gets lost',
                    of=lambda robot, spec: replace(robot.faults.lossy, components=(spec.name,))),
-    'empty': _Kind('scans, images and lists of a component are empty', of=_emptiness),
+    'empty': _Kind('scans, images and lists of a component are empty', of=_of_messages(
+        'empty', lambda kind: kind.has_list, 'a list that can be empty')),
     'freeze': _Kind('a component says the same for ever, with new stamps',
-                    of=lambda _, spec: Setting((spec.name,), 'frozen')),
+                    of=lambda _, spec: Change((spec.name,), {'frozen': True})),
     'unsubscribed': _Kind('a component does not subscribe to one of its topics', of=_deafness),
 }
 

@@ -92,18 +92,15 @@ def process_id(node: str) -> int:
     Raises:
         InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
     """
-    calls = NodeCalls(_CALLER_ID, _WITHIN_S)
-    try:
+    with _asking() as calls:
         address = calls.address(node)
         if not calls.is_here(address):
             raise InduceError(f'{node} runs on another machine ({address}): induce the fault '
                               'there')
-    except NoAnswer as error:
-        raise _no_robot(error) from error
-    try:
-        return calls.process_id(node, address)
-    except NoAnswer as error:
-        raise _DeadError(f'{error}: it is dead already') from error
+        try:
+            return calls.process_id(node, address)
+        except NoAnswer as error:
+            raise _DeadError(f'{error}: it is dead already') from error
 
 
 @contextlib.contextmanager
@@ -193,25 +190,25 @@ def _work(begin: c_double, delay_s: float, parent: int) -> None:
 
 def _check_running(parameter: str) -> None:
     """Check that a robot has set its parameter."""
-    try:
-        known = NodeCalls(_CALLER_ID).parameter(parameter) is not None
-    except NoAnswer as error:
-        raise _no_robot(error) from error
-    if not known:
-        raise _no_robot(f'parameter {parameter} is not set')
+    with _asking() as calls:
+        if calls.parameter(parameter) is None:
+            raise NoAnswer(f'parameter {parameter} is not set')
 
 
 def _set_parameter(parameter: str, value: str) -> None:
-    try:
-        NodeCalls(_CALLER_ID).master('setParam', parameter, value)
-    except NoAnswer as error:
-        raise _no_robot(error) from error
+    with _asking() as calls:
+        calls.master('setParam', parameter, value)
 
 
 def _resolved(namespace: str, *names: str) -> str:
     return '/'.join(['', *filter(None, namespace.split('/')), *names])
 
 
-def _no_robot(why: object) -> InduceError:
-    return InduceError(f'{why}: is the robot running, and are --namespace and ROS_MASTER_URI '
-                       f'({rosgraph.get_master_uri()}) right?')
+@contextlib.contextmanager
+def _asking() -> Iterator[NodeCalls]:
+    """Hand out what asks the robot; without an answer, say what may be wrong."""
+    try:
+        yield NodeCalls(_CALLER_ID, _WITHIN_S)
+    except NoAnswer as error:
+        raise InduceError(f'{error}: is the robot running, and are --namespace and ROS_MASTER_URI '
+                          f'({rosgraph.get_master_uri()}) right?') from error

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import random
+from operator import attrgetter
 from typing import Any, Callable, Dict, Optional
 
 import genpy
@@ -77,7 +78,10 @@ class MessageType:
             if self._list_field is not None:
                 setattr(self._message, self._list_field, [])
         elif self._fill is not None:
-            self._fill(self._message, message.content)
+            noise = random.Random(message.content)
+            for path, value in self._fill(message.content, noise).items():
+                owner, _, name = path.rpartition('.')
+                setattr(attrgetter(owner)(self._message) if owner else self._message, name, value)
         if self._value_field is not None and message.value is not None:
             setattr(self._message, self._value_field, message.value)
         return self._message
@@ -102,78 +106,6 @@ class MessageType:
         return getattr(message, 'header', getattr(message, 'goal_id', None))
 
 
-def _laser_scan(scan: Any, content: int) -> None:
-    noise = random.Random(content)
-    scan.angle_min, scan.angle_max, scan.angle_increment = -1.5708, 1.5708, 3.1416 / _LASER_BEAMS
-    scan.range_min, scan.range_max = 0.05, 8.0
-    scan.ranges = [2.0 + 0.02 * noise.random() for _ in range(_LASER_BEAMS)]
-
-
-def _odometry(odometry: Any, content: int) -> None:
-    odometry.child_frame_id = 'base_link'
-    odometry.pose.pose = _pose(content)
-
-
-def _pose_array(poses: Any, content: int) -> None:
-    poses.poses = [_pose(content + i) for i in range(random.Random(content).randint(1, 4))]
-
-
-def _pose_with_covariance(pose: Any, content: int) -> None:
-    pose.pose.pose = _pose(content)
-
-
-def _pose_stamped(pose: Any, content: int) -> None:
-    pose.pose = _pose(content)
-
-
-def _path(path: Any, content: int) -> None:
-    path.poses = [_new('geometry_msgs/PoseStamped', pose=_pose(content + i * SECOND_NS))
-                  for i in range(random.Random(content).randint(4, 8))]
-
-
-def _grid_cells(cells: Any, content: int) -> None:
-    noise = random.Random(content)
-    cells.cell_width = cells.cell_height = 0.05
-    cells.cells = [_new('geometry_msgs/Point', x=2.0 * noise.random(), y=noise.random())
-                   for _ in range(noise.randint(5, 15))]
-
-
-def _map_metadata(metadata: Any, _: int) -> None:
-    metadata.resolution, metadata.width, metadata.height = 0.05, 400, 400
-    metadata.origin.orientation.w = 1.0
-
-
-def _twist(twist: Any, content: int) -> None:
-    twist.linear.x = 0.3
-    twist.angular.z = 0.2 * math.sin(content / SECOND_NS)
-
-
-def _compressed_image(image: Any, content: int) -> None:
-    noise = random.Random(content)
-    size = noise.randint(230, 280)
-    image.format = 'jpeg'
-    image.data = noise.getrandbits(8 * size).to_bytes(size, 'little')
-
-
-def _joint_state(joints: Any, content: int) -> None:
-    joints.name = ['pan', 'tilt']
-    joints.position = [math.sin(content / SECOND_NS), 0.2 * math.cos(content / SECOND_NS)]
-
-
-def _region(region: Any, content: int) -> None:
-    noise = random.Random(content)
-    region.x_offset, region.y_offset = noise.randint(0, 320), noise.randint(0, 240)
-    region.width = region.height = noise.randint(60, 90)
-
-
-def _battery_state(battery: Any, content: int) -> None:
-    battery.voltage = round(24.0 + math.cos(content / (600.0 * SECOND_NS)), 2)
-
-
-def _goal_status(status: Any, _: int) -> None:
-    status.goal_id.id = 'person'
-
-
 def _pose(content: int) -> Any:
     """Return where the robot is at a time (ns): it goes round in a circle."""
     angle = 0.1 * content / SECOND_NS
@@ -187,21 +119,40 @@ def _new(datatype: str, **fields: Any) -> Any:
     return roslib.message.get_message_class(datatype)(**fields)
 
 
-_FILL: Dict[str, Callable[[Any, int], None]] = {
-    'actionlib_msgs/GoalStatus': _goal_status,
-    'geometry_msgs/PoseArray': _pose_array,
-    'geometry_msgs/PoseStamped': _pose_stamped,
-    'geometry_msgs/PoseWithCovarianceStamped': _pose_with_covariance,
-    'geometry_msgs/Twist': _twist,
-    'nav_msgs/GridCells': _grid_cells,
-    'nav_msgs/MapMetaData': _map_metadata,
-    'nav_msgs/Odometry': _odometry,
-    'nav_msgs/Path': _path,
-    'sensor_msgs/BatteryState': _battery_state,
-    'sensor_msgs/CompressedImage': _compressed_image,
-    'sensor_msgs/JointState': _joint_state,
-    'sensor_msgs/LaserScan': _laser_scan,
-    'sensor_msgs/RegionOfInterest': _region,
+# What the fields of a message hold, by the time (ns) that it is from, and noise that it seeds.
+_FILL: Dict[str, Callable[[int, random.Random], Dict[str, Any]]] = {
+    'actionlib_msgs/GoalStatus': lambda _, __: {'goal_id.id': 'person'},
+    'geometry_msgs/PoseArray': lambda at, noise: {
+        'poses': [_pose(at + i) for i in range(noise.randint(1, 4))]},
+    'geometry_msgs/PoseStamped': lambda at, _: {'pose': _pose(at)},
+    'geometry_msgs/PoseWithCovarianceStamped': lambda at, _: {'pose.pose': _pose(at)},
+    'geometry_msgs/Twist': lambda at, _: {
+        'linear.x': 0.3, 'angular.z': 0.2 * math.sin(at / SECOND_NS)},
+    'nav_msgs/GridCells': lambda _, noise: {
+        'cell_width': 0.05, 'cell_height': 0.05,
+        'cells': [_new('geometry_msgs/Point', x=2.0 * noise.random(), y=noise.random())
+                  for _ in range(noise.randint(5, 15))]},
+    'nav_msgs/MapMetaData': lambda _, __: {
+        'resolution': 0.05, 'width': 400, 'height': 400, 'origin.orientation.w': 1.0},
+    'nav_msgs/Odometry': lambda at, _: {'child_frame_id': 'base_link', 'pose.pose': _pose(at)},
+    'nav_msgs/Path': lambda at, noise: {
+        'poses': [_new('geometry_msgs/PoseStamped', pose=_pose(at + i * SECOND_NS))
+                  for i in range(noise.randint(4, 8))]},
+    'sensor_msgs/BatteryState': lambda at, _: {
+        'voltage': round(24.0 + math.cos(at / (600.0 * SECOND_NS)), 2)},
+    'sensor_msgs/CompressedImage': lambda _, noise: {
+        'format': 'jpeg',
+        'data': noise.getrandbits(8 * (size := noise.randint(230, 280))).to_bytes(size, 'little')},
+    'sensor_msgs/JointState': lambda at, _: {
+        'name': ['pan', 'tilt'],
+        'position': [math.sin(at / SECOND_NS), 0.2 * math.cos(at / SECOND_NS)]},
+    'sensor_msgs/LaserScan': lambda _, noise: {
+        'angle_min': -1.5708, 'angle_max': 1.5708, 'angle_increment': 3.1416 / _LASER_BEAMS,
+        'range_min': 0.05, 'range_max': 8.0,
+        'ranges': [2.0 + 0.02 * noise.random() for _ in range(_LASER_BEAMS)]},
+    'sensor_msgs/RegionOfInterest': lambda _, noise: {
+        'x_offset': noise.randint(0, 320), 'y_offset': noise.randint(0, 240),
+        'width': (size := noise.randint(60, 90)), 'height': size},
 }
 
 # What an empty message has nothing in.

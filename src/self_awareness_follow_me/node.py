@@ -97,7 +97,11 @@ class ComponentNode:
     def _handle(self, requests: List[Request]) -> None:
         for request in requests:
             if isinstance(request, Publish):
-                self._publish(request)
+                send = partial(self._send, request=request)
+                if request.delay > 0:
+                    self._push(self._now() + request.delay, send)
+                else:
+                    send(0)
             elif isinstance(request, Wake):
                 self._push(request.at, partial(self._component.wake, timer=request.timer))
             else:
@@ -110,13 +114,6 @@ class ComponentNode:
         while time.thread_time_ns() < enough:
             pass
         return done
-
-    def _publish(self, request: Publish) -> None:
-        if request.delay > 0:
-            self._push(self._now() + request.delay,
-                       partial(self._send, request=request))
-        else:
-            self._send(self._now(), request)
 
     def _send(self, _: int, request: Publish) -> List[Request]:
         message = request.message

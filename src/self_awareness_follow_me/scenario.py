@@ -18,8 +18,8 @@ from self_awareness import yaml_file
 from self_awareness.yaml_section import Section, SectionError
 from self_awareness_follow_me.component_spec import (ComponentSpec, Duration, Hypothesis, InView,
                                                      Need, Output, Task)
-from self_awareness_follow_me.effects import (ClockDrift, Crash, Faults, Intruder, Novelty,
-                                              OtherTasks, Setting, Starvation, disordered)
+from self_awareness_follow_me.effects import (Change, ClockDrift, Crash, Faults, Intruder,
+                                              Starvation, disordered)
 
 
 @dataclass(frozen=True)
@@ -188,7 +188,7 @@ def _faults(section: Section, components: Tuple[ComponentSpec, ...],
         with section.section('lat') as lat:
             late = tuple(_known(lat, 'components', name, components).name
                          for name in lat.texts('components'))
-            latency = Setting(late, 'delay', lat.number('delay', low=1e-3))
+            latency = Change(late, {'delay': lat.number('delay', low=1e-3)})
         extra = section.section('extra')
         intruder = _component(extra)
         if intruder.name in [spec.name for spec in components]:
@@ -206,9 +206,10 @@ def _faults(section: Section, components: Tuple[ComponentSpec, ...],
             for topic in [o.topic for o in task.publish if o.topic not in changed.outputs()]:
                 unknown.fail('task', f'{changed.name!r} does not publish {topic!r} otherwise')
         with section.section('lossy') as lossy:
-            loss = Setting((), 'lost', lossy.number('share', low=1e-6, high=1.0))
+            loss = Change((), {'lost': lossy.number('share', low=1e-6, high=1.0)})
     return Faults(crashes[0], crashes[1], starvation, drift, latency, Intruder(intruder),
-                  OtherTasks((mixed_up.name,), disordered), Novelty((changed.name,), task), loss)
+                  Change((mixed_up.name,), other=disordered),
+                  Change((changed.name,), more=(task,)), loss)
 
 
 def _known(section: Section, key: str, name: str,

@@ -7,11 +7,11 @@ recording.
 """
 from __future__ import annotations
 
-import functools
 import heapq
 import random
 from collections import defaultdict
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Set, Tuple, Union
 
@@ -35,6 +35,9 @@ _DAYS = 10_000  # that a recording may be of; bags end in 2106
 
 # A recording starts on a robot that has been running: every component has had its inputs by then.
 _WARM_UP_NS = 15 * SECOND_NS
+
+# A component, and what it will do at some time.
+_Act = Tuple[str, Callable[[int], List[Request]]]
 
 
 class Event(NamedTuple):
@@ -82,20 +85,6 @@ class InducedFault:
         if not 0.0 <= self.onset_s < float('inf'):
             raise ValueError(f'fault {self.kind}: the onset must be at least 0 s, '
                              f'not {self.onset_s}')
-
-    @property
-    def culprits(self) -> Tuple[str, ...]:
-        """Names of the nodes to blame, like `/player`, in the robot that comes with the package.
-
-        Empty where it is no single component's fault: rs, ac, silence. For another robot, ask
-        `effect_of(scenario, kind).culprits`.
-        """
-        return effect_of(_packaged_robot(), self.kind).culprits
-
-
-@functools.lru_cache(maxsize=1)
-def _packaged_robot() -> Scenario:
-    return load_scenario()
 
 
 def start_of(seed: int) -> float:
@@ -146,9 +135,11 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int,
     types = {topic: MessageType(datatype) for topic, datatype in scenario.datatypes.items()}
     told = 0
     with replacing(str(path)) as temporary, rosbag.Bag(temporary, 'w') as bag:
-        writer = _Writer(bag, scenario)
+        connections: Dict[Tuple[str, str], Any] = {}  # by source and topic
+        latched = _latched(scenario)
         for event in recording:
-            writer.write(event, types[event.message.topic].to_ros(event.message, event.number))
+            message = types[event.message.topic].to_ros(event.message, event.number)
+            _write(bag, connections, event, message, event.topic in latched)
             elapsed = (event.stamp_ns - nanoseconds(start_s)) // SECOND_NS
             if elapsed > told:
                 progress(elapsed - told)
@@ -156,30 +147,22 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int,
     progress(int(duration_s) - told)
 
 
-class _Writer:
-    """Writes to a bag with a connection for each publisher, as `rosbag record` does."""
-
-    def __init__(self, bag: rosbag.Bag, scenario: Scenario) -> None:
-        self._bag = bag
-        self._latched = _latched(scenario)
-        self._connections: Dict[Tuple[str, str], Any] = {}
-
-    def write(self, event: Event, message: Any) -> None:
-        """Write what a node published."""
-        source, topic = event.source, event.topic
-        # rosbag itself has one connection for each topic, however many nodes publish there.
-        connections = self._bag._topic_connections
-        header = None
-        if (source, topic) in self._connections:
-            connections[topic] = self._connections[source, topic]
-        else:
-            connections.pop(topic, None)
-            header = {'topic': topic, 'type': message._type, 'md5sum': message._md5sum,
-                      'message_definition': message._full_text, 'callerid': source,
-                      'latching': '1' if topic in self._latched else '0'}
-        self._bag.write(topic, message, genpy.Time(*divmod(event.stamp_ns, SECOND_NS)),
-                        connection_header=header)
-        self._connections[source, topic] = connections[topic]
+def _write(bag: rosbag.Bag, connections: Dict[Tuple[str, str], Any], event: Event, message: Any,
+           latched: bool) -> None:
+    """Write a message with a connection for each publisher, as `rosbag record` does."""
+    source, topic = event.source, event.topic
+    header = None
+    # rosbag itself has one connection for each topic, however many nodes publish there.
+    if (source, topic) in connections:
+        bag._topic_connections[topic] = connections[source, topic]
+    else:
+        bag._topic_connections.pop(topic, None)
+        header = {'topic': topic, 'type': message._type, 'md5sum': message._md5sum,
+                  'message_definition': message._full_text, 'callerid': source,
+                  'latching': '1' if latched else '0'}
+    bag.write(topic, message, genpy.Time(*divmod(event.stamp_ns, SECOND_NS)),
+              connection_header=header)
+    connections[source, topic] = bag._topic_connections[topic]
 
 
 def _attach_recorder(recording: Iterator[Event], scenario: Scenario,
@@ -201,14 +184,6 @@ def _latched(scenario: Scenario) -> Set[str]:
             for topic, output in spec.outputs().items() if output.latch}
 
 
-@dataclass(frozen=True)
-class _Act:
-    """Something that a component will do at some time."""
-
-    name: str
-    call: Callable[[int], List[Request]]
-
-
 class _Robot:
     """All components, the messages between them, and the queue of what happens next."""
 
@@ -221,7 +196,7 @@ class _Robot:
         self._subscribers: Dict[str, List[str]] = {topic: [] for topic in scenario.datatypes}
         self._sequences: Dict[Tuple[str, str], int] = defaultdict(int)
         self._arrivals: Dict[Tuple[str, str, str], int] = {}
-        self._queue: List[Tuple[int, int, Union[_Act, Event]]] = []
+        self._queue: List[Tuple[int, int, Union[Event, _Act]]] = []
         self._pushed = 0
         for spec in scenario.components:
             self._add(spec, seed, begin)
@@ -232,11 +207,13 @@ class _Robot:
         """Yield what arrives at the recorder before `end` (ns), in order."""
         while self._queue and self._queue[0][0] < end:
             now, _, item = heapq.heappop(self._queue)
-            if not isinstance(item, _Act):
+            if isinstance(item, Event):
                 yield item
-            elif not self._fault.has_killed(item.name, now):
-                for request in item.call(now):
-                    self._schedule(item.name, request, now)
+                continue
+            name, act = item
+            if not self._fault.has_killed(name, now):
+                for request in act(now):
+                    self._schedule(name, request, now)
 
     def _add(self, spec: ComponentSpec, seed: int, begin: int) -> None:
         component = Component(spec, random.Random(f'{seed}/{spec.name}'),
@@ -244,7 +221,7 @@ class _Robot:
         self._components[spec.name] = component
         for topic in spec.inputs():
             self._subscribers[topic].append(spec.name)
-        self._push(begin, _Act(spec.name, component.start))
+        self._push(begin, (spec.name, component.start))
 
     def _schedule(self, name: str, request: Request, now: int) -> None:
         component = self._components[name]
@@ -253,11 +230,10 @@ class _Robot:
             self._transmit(name, request, now + request.delay)
         elif isinstance(request, Wake):
             late = round(self._scenario.lateness.draw(self._rng) * slowdown)
-            self._push(request.at + late,
-                       _Act(name, functools.partial(component.wake, timer=request.timer)))
+            self._push(request.at + late, (name, partial(component.wake, timer=request.timer)))
         else:
             done = now + round(request.takes * slowdown) + request.waits
-            self._push(done, _Act(name, component.work_done))
+            self._push(done, (name, component.work_done))
 
     def _transmit(self, name: str, request: Publish, now: int) -> None:
         message = request.message
@@ -272,7 +248,7 @@ class _Robot:
         for subscriber in self._subscribers[topic]:
             receive = self._components[subscriber].receive
             self._push(self._arrival(name, topic, subscriber, now),
-                       _Act(subscriber, functools.partial(receive, message=message)))
+                       (subscriber, partial(receive, message=message)))
 
     def _arrival(self, publisher: str, topic: str, subscriber: str, now: int) -> int:
         # Messages do not overtake each other on one connection.
@@ -282,6 +258,6 @@ class _Robot:
         self._arrivals[connection] = arrival
         return arrival
 
-    def _push(self, at: int, item: Union[_Act, Event]) -> None:
+    def _push(self, at: int, item: Union[Event, _Act]) -> None:
         self._pushed += 1
         heapq.heappush(self._queue, (at, self._pushed, item))

@@ -31,8 +31,9 @@ def sped_up(scenario: Scenario, speed: float) -> Scenario:
         speed: > 0; 1: as it is.
     """
     faults = _scaled(scenario.faults, 1.0 / speed)
+    lat = replace(faults.lat, settings={'delay': faults.lat.settings['delay'] / speed})
     return replace(scenario, components=_scaled(scenario.components, 1.0 / speed),
-                   faults=replace(faults, lat=replace(faults.lat, value=faults.lat.value / speed)))
+                   faults=replace(faults, lat=lat))
 
 
 def _scaled(part: Any, factor: float) -> Any:

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -13,18 +13,19 @@
 
 #include "evidence/recordings.h"
 #include "self_awareness/core/evidence/channel/watched.h"
-#include "self_awareness/core/verdict/alarm.h"
+#include "self_awareness/core/evidence/limits/cross_fit.h"
+#include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core {
 namespace {
 
-using evidence::halfOf;
 using evidence::irregular;
 using evidence::kA;
 using evidence::kB;
 using evidence::kMillisecond;
 using evidence::kSecond;
 using evidence::together;
+using evidence::without;
 
 constexpr std::int64_t kLength = 120 * kSecond;
 const std::vector<EventType> kTypes{{"/a", "/x", "T"}, {"/b", "/y", "T"}};
@@ -78,37 +79,6 @@ TEST(Learner, AModelSaysWhatItWasLearnedFromAndHasLimits) {
   EXPECT_EQ(model.findings.size(), 4U);
   for (const evidence::Coverage& component : model.coverage()) {
     EXPECT_TRUE(component.isWatched()) << component.component;
-  }
-}
-
-TEST(Learner, IsTheSameAsItsStepsOneByOne) {
-  const std::vector<std::uint64_t> fingerprints{1, 2, 4, 7};
-  const Model model = learned(fingerprints);
-  Learner learner;
-  addTypes(learner);
-  for (const std::uint64_t fingerprint : fingerprints) {
-    Recording recording = robot(static_cast<unsigned>(fingerprint));
-    recording.fingerprint = fingerprint;
-    learner.count(recording);
-  }
-  const Model counts = learner.counts();
-  EXPECT_FALSE(counts.isWatched());
-  EXPECT_TRUE(model.evidence[0] == counts.evidence[0]);
-  EXPECT_TRUE(model.evidence[1] == counts.evidence[1]);
-  const evidence::CrossFit models(evidence::watch(counts.evidence[0], counts.evidence[1]));
-  evidence::LimitFinder finder(models.model(), {});
-  for (const std::uint64_t fingerprint : fingerprints) {
-    finder.startRecording(models.judging(halfOf(fingerprint)));
-    for (const Event& event : robot(static_cast<unsigned>(fingerprint)).events) {
-      finder.add(event);
-    }
-  }
-  finder.finish();
-  const std::vector<double> limits = finder.find().limits.tracks;
-  ASSERT_EQ(model.calibration->limits.tracks.size(), limits.size());
-  for (std::size_t track = 0; track < limits.size(); ++track) {
-    EXPECT_TRUE(model.calibration->limits.tracks[track] == limits[track] ||
-                std::isnan(limits[track]));
   }
 }
 
@@ -166,11 +136,9 @@ TEST(Calibrator, RecordingsThatWereNotTrainedOnSayWhenATypeComesFirst) {
   calibrator.merge(model.findings);
   Recording late = robot(5);
   const std::int64_t start = late.events.front().stamp;
-  late.events.erase(std::remove_if(late.events.begin(), late.events.end(),
-                                   [&](const Event& event) {
-                                     return event.id == kB && event.stamp < start + 3 * kSecond;
-                                   }),
-                    late.events.end());
+  late.events = without(late.events, [&](const Event& event) {
+    return event.id == kB && event.stamp < start + 3 * kSecond;
+  });
   late.events.push_back({late.events.back().stamp, 7});  // an unknown event
   const std::unique_ptr<Calibrator> part = calibrator.part();
   part->addHeldOut(late);
@@ -182,11 +150,9 @@ TEST(Calibrator, RecordingsThatWereNotTrainedOnSayWhenATypeComesFirst) {
   EXPECT_LT(found.limits.firsts[kA], kSecond);
   EXPECT_GE(found.limits.firsts[kB], 3 * kSecond) << "the latest of the two";
   EXPECT_LT(found.limits.firsts[kB], 4 * kSecond);
-  Recording without = robot(7);
-  without.events.erase(std::remove_if(without.events.begin(), without.events.end(),
-                                      [](const Event& event) { return event.id == kB; }),
-                       without.events.end());
-  calibrator.addHeldOut(without);
+  Recording of_a = robot(7);
+  of_a.events = without(of_a.events, [](const Event& event) { return event.id == kB; });
+  calibrator.addHeldOut(of_a);
   EXPECT_EQ(calibrator.find().limits.firsts[kB], -1) << "it does not always come";
 }
 
@@ -195,10 +161,8 @@ TEST(Calibrator, AfterAStepOfTheClockFirstEventsCountFromThere) {
   Calibrator calibrator(model, {});
   Recording stepped = robot(5, 200 * kSecond);
   const std::int64_t step = stepped.events.front().stamp + 100 * kSecond;
-  stepped.events.erase(
-      std::remove_if(stepped.events.begin(), stepped.events.end(),
-                     [&](const Event& event) { return event.id == kB && event.stamp < step; }),
-      stepped.events.end());
+  stepped.events = without(
+      stepped.events, [&](const Event& event) { return event.id == kB && event.stamp < step; });
   for (Event& event : stepped.events) {
     event.stamp += event.stamp >= step ? 3600 * kSecond : 0;
   }
@@ -213,55 +177,178 @@ TEST(Calibrator, AfterAStepOfTheClockFirstEventsCountFromThere) {
   EXPECT_LT(calibrator.findings()[1].firsts.at(kB), kSecond) << "not the hour of the step";
 }
 
-TEST(Model, KnowsStrangersIfItIsToldOfTheirTypes) {
-  const Model model = learned({1, 2, 3, 4});
-  const auto heard = std::make_shared<Vocabulary>(model.vocabulary());
-  const EventId stranger = heard->intern({"/c", "/x", "T"});
-  Recording told = robot(9);
-  const std::int64_t middle = middleOf(told.events);
-  told.events.insert(std::find_if(told.events.begin(), told.events.end(),
-                                  [&](const Event& event) { return event.stamp >= middle; }),
-                     {middle, stranger});
-  Alarms alarms;
-  std::optional<Alarm> found;
-  Detector detector(model.makeJudge(heard), model.window, {}, [&](const Verdict& verdict) {
-    alarms.add(verdict, model.window, *heard);
-    found = found ? found : alarms.standing();
-  });
-  for (const Event& event : told.events) {
-    detector.add(event);
-  }
-  detector.finish();
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->kind, Kind::kStranger);
-  EXPECT_EQ(found->culprit, "/c");
+constexpr std::int64_t kPeriod = 50000000;  // [ns]
+
+Learner::Parameters counting(bool evidence, bool paper) {
+  Learner::Parameters parameters;
+  parameters.counting.evidence = evidence;
+  parameters.counting.paper = paper;
+  return parameters;
 }
 
-TEST(Model, WhatWasLearnedJudgesAnotherRecording) {
-  const Model model = learned({1, 2, 3, 4});
-  Recording dead = robot(9);
-  const std::int64_t death = dead.events.front().stamp + 60 * kSecond;
-  dead.events.erase(
-      std::remove_if(dead.events.begin(), dead.events.end(),
-                     [&](const Event& event) { return event.id == kA && event.stamp > death; }),
-      dead.events.end());
-  Alarms alarms;
-  std::vector<Alarm> found;
-  Detector detector(model.makeJudge(), model.window, {}, [&](const Verdict& verdict) {
-    alarms.add(verdict, model.window, model.vocabulary());
-    if (verdict.alarm && verdict.changed) {
-      found.push_back(*alarms.standing());
-    }
-  });
-  for (const Event& event : dead.events) {
-    detector.add(event);
+Recording recording(std::int64_t start, int events) {
+  Recording recording;
+  for (int i = 0; i < events; ++i) {
+    recording.events.push_back({start + i * kPeriod, static_cast<EventId>(i % 2)});
   }
-  detector.finish();
-  ASSERT_EQ(found.size(), 1U) << "a pause of the other one is no silence of all";
-  EXPECT_EQ(found[0].culprit, "/a");
-  EXPECT_EQ(found[0].kind, Kind::kSilent);
-  EXPECT_GT(found[0].begin, death);
-  EXPECT_LT(found[0].begin, death + 3 * kSecond);
+  return recording;
+}
+
+// The same, of the half that the fingerprint says.
+Recording recording(std::int64_t start, int events, std::uint64_t fingerprint) {
+  Recording of_half = recording(start, events);
+  of_half.fingerprint = fingerprint;
+  return of_half;
+}
+
+// Counts recordings in this order, each of so many events; those of 20 belong to the second half.
+Model countsOf(const Learner::Parameters& parameters, const std::vector<int>& all) {
+  Learner learner(parameters, {});
+  addTypes(learner);
+  for (const int events : all) {
+    learner.count(recording(events * 1000 * kPeriod, events, events == 20 ? 7 : 4));
+  }
+  return learner.counts();
+}
+
+// Learns from recordings of 10, 20 and 40 events.
+Model threeRecordings(const Learner::Parameters& parameters) {
+  return countsOf(parameters, {10, 20, 40});
+}
+
+std::uint64_t eventsOf(const evidence::Statistics& half) {
+  return half.type(0).events + half.type(1).events;
+}
+
+TEST(LearnedCounts, RecordingsBelongToTheTwoHalvesByTheirFingerprint) {
+  const Model counts = threeRecordings(counting(true, true));
+  EXPECT_EQ(eventsOf(counts.evidence[0]), 50U);
+  EXPECT_EQ(eventsOf(counts.evidence[1]), 20U);
+  EXPECT_EQ(counts.statistics.events(), 70U);
+  EXPECT_EQ(counts.onlyHalf(), std::nullopt);
+}
+
+TEST(LearnedCounts, AddUpToThoseOfOneLearner) {
+  const std::vector<int> all{10, 20, 40};
+  for (unsigned in_first = 0; in_first < 8; ++in_first) {
+    std::vector<int> first;
+    std::vector<int> second;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      (((in_first >> i) & 1U) != 0 ? first : second).push_back(all[i]);
+    }
+    if (first.empty() || second.empty()) {
+      continue;
+    }
+    Model sum = countsOf(counting(true, false), first);
+    const Model other = countsOf(counting(true, false), second);
+    sum.add(other);
+    EXPECT_TRUE(sum.evidence == threeRecordings(counting(true, false)).evidence) << in_first;
+  }
+  // Recordings of one half stay in two parts.
+  Model sum = countsOf(counting(true, false), {10});
+  const Model other = countsOf(counting(true, false), {40});
+  sum.add(other);
+  EXPECT_TRUE(sum.evidence == countsOf(counting(true, false), {10, 40}).evidence);
+  EXPECT_EQ(eventsOf(sum.evidence[0]), 25U);
+}
+
+TEST(LearnedCounts, CountsOnlyForTheDetectorsAskedFor) {
+  const Model both = threeRecordings(counting(true, true));
+  const Model evidence = threeRecordings(counting(true, false));
+  EXPECT_TRUE(evidence.evidence == both.evidence);
+  EXPECT_EQ(evidence.statistics.pairs(), 0U);
+  EXPECT_EQ(evidence.statistics.eventCount(0), both.statistics.eventCount(0));
+  const Model paper = threeRecordings(counting(false, true));
+  EXPECT_TRUE(paper.statistics == both.statistics);
+  EXPECT_EQ(paper.evidence[0].size(), 0U);
+  EXPECT_THROW(Learner(counting(false, false), {}), std::invalid_argument);
+}
+
+TEST(LearnedCounts, ThePaperKnowsNoModes) {
+  for (const bool paper : {true, false}) {
+    Learner learner(counting(true, paper), {});
+    learner.intern(kTypes[0]);
+    const EventId mode = learner.intern({"/b", "/y", typeOfMode("t", "DRIVING")});
+    learner.count(recording(0, 100, 1));
+    const Model counts = learner.counts();
+    EXPECT_EQ(counts.statistics.eventCount(0), 50U);
+    EXPECT_EQ(counts.statistics.eventCount(mode), 0U);
+    EXPECT_EQ(counts.evidence[0].type(mode).events + counts.evidence[1].type(mode).events, 5U)
+        << "that it ticks in 5 s";
+  }
+}
+
+TEST(LearnedCounts, RecordingsOfOneHalfAreCutInTwo) {
+  Learner learner(counting(true, true), {});
+  addTypes(learner);
+  learner.count(recording(0, 10, 3));
+  const Model counts = learner.counts();
+  EXPECT_EQ(counts.onlyHalf(), std::optional<std::size_t>(1));
+  EXPECT_EQ(eventsOf(counts.evidence[0]), 5U);
+  EXPECT_EQ(eventsOf(counts.evidence[1]), 5U);
+  EXPECT_EQ(counts.evidence[1].type(0).gaps, 2U);  // the one over the cut ends in the second part
+  EXPECT_EQ(counts.evidence[0].recordings().size() + counts.evidence[1].recordings().size(), 1U);
+  EXPECT_THROW(learner.counts(), std::logic_error);
+  EXPECT_THROW(learner.count(recording(0, 10)), std::logic_error);
+}
+
+TEST(LearnedCounts, OfWhatComesBeforeOnlyTheFirstTimesCount) {
+  Learner learner;
+  addTypes(learner);
+  Recording part = recording(20 * kPeriod, 10, 4);
+  part.since = 3 * kPeriod;
+  part.before = {{5 * kPeriod, 1}, {6 * kPeriod, 1}};
+  learner.count(part);
+  const Model counts = learner.counts();
+  EXPECT_EQ(eventsOf(counts.evidence[0]) + eventsOf(counts.evidence[1]), 10U);
+  const auto& halves = counts.evidence;
+  const auto& recordings = (halves[0].recordings().empty() ? halves[1] : halves[0]).recordings();
+  ASSERT_EQ(recordings.size(), 1U);
+  EXPECT_EQ(recordings[0].firsts, (std::vector<std::int64_t>{17 * kPeriod, 2 * kPeriod}));
+  EXPECT_EQ(counts.recordings[0].start, 20 * kPeriod);
+}
+
+TEST(LearnedCounts, WhatDoesNotFitIsNotAddedAndSaysWhy) {
+  Learner::Parameters parameters = counting(true, false);
+  Model sum = countsOf(parameters, {10});
+  const Model whole = countsOf(parameters, {10, 20});
+  parameters.counting.window *= 2;
+  EXPECT_THROW(sum.add(countsOf(parameters, {20})), std::invalid_argument);
+  EXPECT_THROW(sum.add(countsOf(counting(true, true), {20})), std::invalid_argument);
+  Model part = countsOf(counting(true, false), {20});
+  part.graph.connect("/a", "/x", "/b");
+  Model watched = part;
+  watched.watch();
+  watched.dropCounts();
+  EXPECT_THROW(sum.add(watched), std::invalid_argument);
+  ASSERT_EQ(sum.recordings.size(), 1U);
+  sum.watch();
+  sum.add(part);
+  EXPECT_TRUE(sum.evidence == whole.evidence);
+  EXPECT_TRUE(sum.statistics == whole.statistics);
+  EXPECT_EQ(sum.recordings.size(), 2U);
+  EXPECT_EQ(sum.graph.edges().size(), 1U);
+  EXPECT_FALSE(sum.isWatched()) << "it was chosen by fewer counts";
+}
+
+TEST(CrossFit, AHalfIsJudgedByWhatTheOtherSays) {
+  Learner learner(counting(true, false), {});
+  addTypes(learner);
+  for (const int events : {200, 301}) {
+    learner.count(recording(0, events, static_cast<std::uint64_t>(events)));
+  }
+  const Model counts = learner.counts();
+  const evidence::Watched watched = evidence::watch(counts.evidence[0], counts.evidence[1]);
+  const evidence::CrossFit cross_fit(watched);
+  EXPECT_EQ(cross_fit.judging(std::nullopt), cross_fit.model());
+  for (const std::size_t half : {0U, 1U}) {
+    const evidence::Model other(
+        watched, half == 0 ? evidence::Model::Learned::kSecond : evidence::Model::Learned::kFirst);
+    EXPECT_EQ(cross_fit.judging(half)->logSurvival(0, 3 * kPeriod),
+              other.logSurvival(0, 3 * kPeriod));
+    EXPECT_NE(other.logSurvival(0, 3 * kPeriod), cross_fit.model()->logSurvival(0, 3 * kPeriod));
+  }
+  EXPECT_THROW(cross_fit.judging(2), std::out_of_range);
 }
 
 }  // namespace

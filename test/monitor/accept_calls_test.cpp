@@ -2,21 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <boost/filesystem.hpp>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "../await.h"
+#include "../in_folder.h"
+#include "../problem.h"
 #include "ros/verdict/accepted_file.h"
 
 namespace self_awareness {
 namespace {
-
-namespace fs = boost::filesystem;
 
 core::Suspect suspect(core::EventId id, const std::string& component, core::Kind kind,
                       bool abnormal = true) {
@@ -28,38 +26,34 @@ core::Suspect suspect(core::EventId id, const std::string& component, core::Kind
   return suspect;
 }
 
-self_awareness::Acceptance named(const std::string& component, const std::string& topic,
-                                 const std::string& kind = "") {
-  self_awareness::Acceptance one;
-  one.component = component;
-  one.topic = topic;
-  one.kind = kind;
-  return one;
-}
-
-Accept::Request asked(const std::string& component, const std::string& topic = "",
-                      const std::string& kind = "", bool undo = false) {
-  Accept::Request request;
+/// A request, or an entry of one.
+template <typename Named = Accept::Request>
+Named asked(const std::string& component, const std::string& topic = "",
+            const std::string& kind = "") {
+  Named request;
   request.component = component;
   request.topic = topic;
   request.kind = kind;
-  request.undo = undo ? 1U : 0U;
+  return request;
+}
+
+Accept::Request back(const std::string& component, const std::string& topic = "") {
+  Accept::Request request = asked(component, topic);
+  request.undo = 1U;
+  return request;
+}
+
+Accept::Request ofIncident(std::uint64_t id) {
+  Accept::Request request;
+  request.incident = id;
   return request;
 }
 
 // A robot of a fleet: its names are those of the model but for /r and a number.
-class AcceptCallsTest : public testing::Test {
+class AcceptCallsTest : public InFolder {
  protected:
-  AcceptCallsTest() {
-    fs::create_directory(folder_);
-    calls_.read(model_);
-  }
-  ~AcceptCallsTest() override {
-    calls_.finish();
-    fs::remove_all(folder_);
-  }
-  AcceptCallsTest(const AcceptCallsTest&) = delete;
-  AcceptCallsTest& operator=(const AcceptCallsTest&) = delete;
+  AcceptCallsTest() { calls_.read(model_); }
+  ~AcceptCallsTest() override { calls_.finish(); }
 
   /// @return the answer; `success` is what it has to be
   std::string call(const Accept::Request& request, bool success = true) {
@@ -68,10 +62,10 @@ class AcceptCallsTest : public testing::Test {
     return response.message;
   }
   std::string accepted() const { return inWordsOf(calls_.accepted().list()); }
-  /// Accepts what stands. @return the answer
-  std::string acceptAlarm(bool success = true) {
+  /// Accepts what stands, or what stood. @return the answer
+  std::string acceptAlarm(bool success = true, std::uint64_t id = 5) {
     Accept::Request request;
-    request.alarm = alarm_->id;
+    request.alarm = id;
     return call(request, success);
   }
   /// An alarm that stands from now on.
@@ -90,8 +84,7 @@ class AcceptCallsTest : public testing::Test {
     return rules;
   }
 
-  const fs::path folder_ = fs::temp_directory_path() / fs::unique_path();
-  const std::string model_ = (folder_ / "robot.model").string();
+  const std::string model_ = path("robot.model");
   core::Vocabulary vocabulary_{{{"/driver", "/scan", "T"}, {"/base", "/odom", "T"}}};
   ros1::Encoder encoder_{rules(), [](const core::EventType& /*type*/) { return 0; }};
   std::optional<core::Alarm> alarm_;
@@ -109,37 +102,24 @@ class AcceptCallsTest : public testing::Test {
 TEST_F(AcceptCallsTest, WhatStandsIsTakenByItsIdWhileItStands) {
   stands(core::Kind::kSilent, {suspect(0, "/driver", core::Kind::kSilent),
                                suspect(1, "/base", core::Kind::kLate, false)});
-  Accept::Request request;
-  request.alarm = 4;
-  EXPECT_EQ(call(request, false), "alarm: 4 does not stand any more");
-  request.alarm = 5;
-  call(request);
+  EXPECT_EQ(acceptAlarm(false, 4), "alarm: 4 does not stand any more");
+  acceptAlarm();
   EXPECT_EQ(accepted(), "/driver on /scan (silent)") << "the other one is near its limit only";
   EXPECT_TRUE(calls_.covers(*alarm_, vocabulary_));
   alarm_.reset();
-  EXPECT_EQ(call(request, false), "alarm: 5 does not stand any more");
+  EXPECT_EQ(acceptAlarm(false), "alarm: 5 does not stand any more");
   EXPECT_EQ(changes_, 1);
-}
-
-TEST_F(AcceptCallsTest, ADeathIsCoveredByAnAbsenceThatIsAccepted) {
-  stands(core::Kind::kSilent, {suspect(0, "/driver", core::Kind::kSilent)});
+  call(back("/*"));
+  stands(core::Kind::kSilent,
+         {suspect(0, "/driver", core::Kind::kSilent), suspect(1, "/base", core::Kind::kLate)})
+      .busy = core::Busy();
+  acceptAlarm();
+  EXPECT_EQ(accepted(), "/driver on /scan (silent)") << "the machine is busy: the culprit only";
+  call(back("/*"));
   call(asked("/driver", "", "never came"));
-  EXPECT_TRUE(calls_.covers(*alarm_, vocabulary_));
+  EXPECT_TRUE(calls_.covers(*alarm_, vocabulary_)) << "it is an absence";
   stands(core::Kind::kSlow, {suspect(0, "/driver", core::Kind::kSlow)});
   EXPECT_FALSE(calls_.covers(*alarm_, vocabulary_)) << "it is there";
-}
-
-TEST_F(AcceptCallsTest, WhatNamesNobodyOrNoKindIsRefused) {
-  EXPECT_NE(call(asked("", "", "slow"), false).find("name a component or a topic"),
-            std::string::npos);
-  EXPECT_NE(call(asked("/a", "", "odd"), false).find("kind: odd is not a kind"),
-            std::string::npos);
-  Accept::Request request;
-  request.incident = 7;
-  EXPECT_NE(call(request, false).find("there is none of the id 7"), std::string::npos);
-  request.component = "/a";
-  EXPECT_NE(call(request, false).find("alone, without component"), std::string::npos);
-  EXPECT_EQ(changes_, 0);
 }
 
 TEST_F(AcceptCallsTest, ACallThatNamesNothingAcceptsNothingAndTellsWhatMayBeNamed) {
@@ -158,21 +138,15 @@ TEST_F(AcceptCallsTest, ACallThatNamesNothingAcceptsNothingAndTellsWhatMayBeName
       "\"{component: /base, topic: /odom, kind: stranger}\" for 12 messages of it, "
       "\"{incident: 4}\" for /driver (silent)";
   EXPECT_EQ(call({}, false), offers + ", \"{incident: 3}\" for /slam (silent)");
+  EXPECT_EQ(call(back(""), false), "nothing is accepted");
   call(asked("/slam"));
+  EXPECT_EQ(call(back(""), false), "name what is to be judged again: /slam");
   EXPECT_EQ(call({}, false), offers) << "what is accepted already is not offered";
   alarm_->culprit.clear();
-  EXPECT_NE(call({}, false).find("alarm 5: nobody is to blame for it (silent); name a component"),
-            std::string::npos);
+  EXPECT_TRUE(
+      has(call({}, false), "alarm 5: nobody is to blame for it (silent); name a component"));
   EXPECT_EQ(accepted(), "/slam");
   EXPECT_EQ(changes_, 1);
-}
-
-TEST_F(AcceptCallsTest, ACallThatNamesNothingToTakeBackTellsWhatIsAccepted) {
-  EXPECT_EQ(call(asked("", "", "", true), false), "nothing is accepted");
-  call(asked("/driver", "/scan", "slow"));
-  call(asked("/base"));
-  EXPECT_EQ(call(asked("", "", "", true), false),
-            "name what is to be judged again: /driver on /scan (slow), /base");
 }
 
 TEST_F(AcceptCallsTest, WhatIsNobodysFaultIsRefused) {
@@ -182,8 +156,7 @@ TEST_F(AcceptCallsTest, WhatIsNobodysFaultIsRefused) {
                                        suspect(1, "/base", core::Kind::kSilent)});
     alarm.culprit.clear();
     const std::string answer = acceptAlarm(false);
-    EXPECT_NE(answer.find(core::toString(kind)), std::string::npos) << answer;
-    EXPECT_NE(answer.find("name a component"), std::string::npos) << answer;
+    EXPECT_TRUE(has(answer, core::toString(kind)) && has(answer, "name a component")) << answer;
     call(asked("/driver", "", core::toString(kind)), false);
   }
   EXPECT_EQ(accepted(), "");
@@ -206,45 +179,34 @@ TEST_F(AcceptCallsTest, AModeIsTakenWhileItStandsOrByItsIncidentAndTakenBack) {
   calls_.tell(vocabulary_.types(), state);
   EXPECT_EQ(state.accepted, std::vector<std::string>{words + ", by /rqt"});
   EXPECT_EQ(state.accepted_of.at("/driver"), words);
-  call(asked("/camera", "", "", true));
+  call(back("/camera"));
   EXPECT_EQ(accepted(), "");
 
   self_awareness::Incident incident;
   incident.id = 3;
   incident.kind = "new mode";
   incidents_.incidents = {incident};
-  Accept::Request request;
-  request.incident = 3;
-  EXPECT_NE(call(request, false).find("not all components that were off are known"),
-            std::string::npos);
+  EXPECT_TRUE(has(call(ofIncident(3), false), "not all components that were off are known"));
   incidents_.incidents[0].together = {"/base", "/camera", "/driver", "/imu"};
-  call(request);
+  call(ofIncident(3));
   EXPECT_EQ(accepted(), words);
   calls_.finish();
   EXPECT_TRUE(ros1::readAccepted(ros1::pathOfAccepted(model_)).value().coversMode({"/imu"}));
-  EXPECT_NE(call(asked("/driver", "", "new mode"), false).find("accept it while it stands"),
-            std::string::npos);
-  request.undo = 1U;
-  call(request);
+  EXPECT_TRUE(has(call(asked("/driver", "", "new mode"), false), "accept it while it stands"));
+  Accept::Request again = ofIncident(3);
+  again.undo = 1U;
+  call(again);
   EXPECT_EQ(accepted(), "");
-}
-
-TEST_F(AcceptCallsTest, WhileTheMachineIsBusyOnlyTheCulpritIsTaken) {
-  stands(core::Kind::kSilent,
-         {suspect(0, "/driver", core::Kind::kSilent), suspect(1, "/base", core::Kind::kLate)})
-      .busy = core::Busy();
-  acceptAlarm();
-  EXPECT_EQ(accepted(), "/driver on /scan (silent)");
 }
 
 TEST_F(AcceptCallsTest, OfConnectionsEachTopicIsTaken) {
   std::vector<core::Suspect> deaf{suspect(1, "/base", core::Kind::kUnsubscribed, false)};
   deaf[0].reason.topics = {"/cmd_vel", "/stop"};
   stands(core::Kind::kUnsubscribed, deaf);
-  EXPECT_EQ(acceptAlarm().find("nobody of that name"), std::string::npos) << "/base is known";
+  EXPECT_FALSE(has(acceptAlarm(), "nobody of that name")) << "/base is known";
   EXPECT_EQ(accepted(), "/base on /cmd_vel (not subscribed), /base on /stop (not subscribed)");
   EXPECT_TRUE(calls_.covers(*alarm_, vocabulary_));
-  call(asked("/base", "/stop", "", true));
+  call(back("/base", "/stop"));
   EXPECT_FALSE(calls_.covers(*alarm_, vocabulary_));
   ros1::CommunicationState state;
   calls_.tell(vocabulary_.types(), state);
@@ -259,28 +221,29 @@ TEST_F(AcceptCallsTest, OfAnIncidentItsVictimsAreNotTaken) {
   incident.together = {"/base"};
   incident.victims = {"/slam"};
   incidents_.incidents = {incident};
-  Accept::Request request;
-  request.incident = 3;
-  call(request);
+  call(ofIncident(3));
   EXPECT_EQ(accepted(), "/driver (silent), /base (silent)");
-  call(asked("/*", "", "", true));
+  call(back("/*"));
   incidents_.incidents[0].kind = "slow";
-  call(request);
+  call(ofIncident(3));
   EXPECT_EQ(accepted(), "/driver (slow)") << "who fell silent with it is not slow";
   incidents_.incidents[0].component.clear();
   incidents_.incidents[0].kind = "all silent";
-  EXPECT_NE(call(request, false).find("nobody is to blame"), std::string::npos);
+  EXPECT_TRUE(has(call(ofIncident(3), false), "nobody is to blame"));
+  EXPECT_TRUE(has(call(ofIncident(7), false), "there is none of the id 7"));
+  Accept::Request both = ofIncident(3);
+  both.component = "/a";
+  EXPECT_TRUE(has(call(both, false), "alone, without component"));
 }
 
 TEST_F(AcceptCallsTest, SeveralAreTakenInOneCall) {
   Accept::Request request;
-  request.more = {named("/joystick", "/joy", "stranger"), named("nobody", ""),
-                  named("/rqt", "/plot", "stranger")};
+  using Entry = self_awareness::Acceptance;
+  request.more = {asked<Entry>("/joystick", "/joy", "stranger"), asked<Entry>("nobody"),
+                  asked<Entry>("/rqt", "/plot", "stranger")};
   const std::string answer = call(request, false);
-  EXPECT_EQ(answer.rfind("2 of 3: normal from now on: /joystick on /joy (stranger), ", 0), 0U)
-      << answer;
-  EXPECT_NE(answer.find("refused: nobody: component: a name begins with a /"), std::string::npos)
-      << answer;
+  EXPECT_TRUE(begins(answer, "2 of 3: normal from now on: /joystick on /joy (stranger), "));
+  EXPECT_TRUE(has(answer, "refused: nobody: component: a name begins with a /"));
   EXPECT_EQ(accepted(), "/joystick on /joy (stranger), /rqt on /plot (stranger)");
   EXPECT_EQ(changes_, 1);
 }
@@ -288,12 +251,12 @@ TEST_F(AcceptCallsTest, SeveralAreTakenInOneCall) {
 TEST_F(AcceptCallsTest, ThereIsAMostInACallAndInAnAnswer) {
   Accept::Request request;
   for (std::size_t k = 0; k < core::Acceptances::kMost; ++k) {
-    request.more.push_back(named("/n" + std::to_string(k), ""));
+    request.more.push_back(asked<self_awareness::Acceptance>("/n" + std::to_string(k)));
   }
   EXPECT_LT(call(request).size(), 2000U);
-  EXPECT_NE(call(asked("/one_more"), false).find("which is the most"), std::string::npos);
-  request.more.push_back(named("/n", ""));
-  EXPECT_NE(call(request, false).find("more than 1000"), std::string::npos);
+  EXPECT_TRUE(has(call(asked("/one_more"), false), "which is the most"));
+  request.more.push_back(request.more[0]);
+  EXPECT_TRUE(has(call(request, false), "more than 1000"));
 }
 
 TEST_F(AcceptCallsTest, NamesAreCheckedAndAreThoseOfTheModel) {
@@ -302,42 +265,41 @@ TEST_F(AcceptCallsTest, NamesAreCheckedAndAreThoseOfTheModel) {
     call(asked(name), false);
     call(asked("", name), false);
   }
+  EXPECT_TRUE(has(call(asked("", "", "slow"), false), "name a component or a topic"));
+  EXPECT_TRUE(has(call(asked("/a", "", "odd"), false), "kind: odd is not a kind"));
   EXPECT_EQ(changes_, 0);
   const std::string answer = call(asked("/r7/driver_4242_1600000000000", "/r7/scan", "slow"));
   EXPECT_EQ(accepted(), "/driver on /scan (slow)");
-  EXPECT_EQ(answer.find("known yet"), std::string::npos) << answer;
-  EXPECT_NE(call(asked("/nobody*")).find("; nobody of that name is known yet: /nobody*"),
-            std::string::npos);
-  EXPECT_EQ(call(asked("/dri*")).find("known yet"), std::string::npos);
+  EXPECT_FALSE(has(answer, "known yet")) << answer;
+  EXPECT_TRUE(has(call(asked("/nobody*")), "; nobody of that name is known yet: /nobody*"));
+  EXPECT_FALSE(has(call(asked("/dri*")), "known yet"));
 }
 
 TEST_F(AcceptCallsTest, AllThatFitsIsTakenBackAndElseItIsSaidWhatIsAccepted) {
   call(asked("/driver", "/scan", "slow"));
   call(asked("/driver", "", "stale"));
   call(asked("/base"));
-  EXPECT_NE(call(asked("/slam", "", "", true), false)
-                .find("/slam is not accepted; these are: /driver on /scan (slow), "),
-            std::string::npos);
-  EXPECT_EQ(call(asked("/driver", "", "", true))
-                .rfind("judged again: /driver on /scan (slow), /driver (stale)", 0),
-            0U);
+  EXPECT_TRUE(has(call(back("/slam"), false),
+                  "/slam is not accepted; these are: /driver on /scan (slow), "));
+  EXPECT_TRUE(
+      begins(call(back("/driver")), "judged again: /driver on /scan (slow), /driver (stale)"));
   EXPECT_EQ(accepted(), "/base");
-  call(asked("/base", "", "", true));
-  EXPECT_NE(call(asked("/base", "", "", true), false).find("nothing is"), std::string::npos);
+  call(back("/base"));
+  EXPECT_TRUE(has(call(back("/base"), false), "nothing is"));
 }
 
 TEST_F(AcceptCallsTest, AReloadDoesNotForgetWhatIsNotWrittenYet) {
-  const std::string path = ros1::pathOfAccepted(model_);
-  fs::create_directory(path);  // so that it cannot be written
+  const std::string file = ros1::pathOfAccepted(model_);
+  boost::filesystem::create_directory(file);  // so that it cannot be written
   call(asked("/driver", "", "slow"));
   ASSERT_TRUE(await([&] { return !calls_.error().empty(); }));
   calls_.read(model_);
   EXPECT_EQ(accepted(), "/driver (slow)");
-  calls_.read((folder_ / "other.model").string());
+  calls_.read(path("other.model"));
   EXPECT_EQ(accepted(), "") << "that of another model is another one";
   calls_.read(model_);
   EXPECT_EQ(accepted(), "/driver (slow)");
-  fs::remove(path);
+  boost::filesystem::remove(file);
   calls_.finish();
   calls_.read(model_);
   EXPECT_EQ(accepted(), "/driver (slow)") << "it is written";

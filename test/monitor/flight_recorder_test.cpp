@@ -131,16 +131,15 @@ TEST_F(FlightRecorderTest, AnAlarmIsWrittenWithWhatFollows) {
   EXPECT_TRUE(reader.summary().has_sources);
   EXPECT_EQ(reader.summary().graph.topics.count("/scan"), 1U);
   EXPECT_EQ(files().size(), 1U) << "no temporary file is left";
-}
 
-TEST_F(FlightRecorderTest, AnAlarmThatFollowsSoonIsInTheSameFile) {
-  hear(0, 20);
-  const std::string path = raise();
-  hear(20, 25);
-  EXPECT_EQ(raise(), path);
-  hear(25, 31);
-  ASSERT_TRUE(awaitFiles(1));
-  EXPECT_NE(raise(), path);
+  const std::string next = raise();
+  EXPECT_NE(next, path);
+  EXPECT_EQ(raise(), next) << "it follows soon";
+  tick(kStart + 31 * kSecond);
+  ASSERT_TRUE(awaitFiles(2));
+  EXPECT_EQ(ros1::EventLogReader(next, 0).summary().end, kStart + 31 * kSecond)
+      << "silence belongs to it";
+  expectSame(read(next), 0, 2600);
 }
 
 TEST_F(FlightRecorderTest, TheOldestEventsAreForgotten) {
@@ -184,17 +183,6 @@ TEST_F(FlightRecorderTest, AnEventTypeThatWasHeardLongAgoKeepsItsName) {
   expectSame(events, heard_.size() - events.size(), heard_.size());
 }
 
-TEST_F(FlightRecorderTest, SilenceBelongsToIt) {
-  parameters_.after = 5;
-  hear(0, 20);
-  tick(kStart + 21 * kSecond);
-  const std::string path = raise();
-  tick(kStart + 26 * kSecond);
-  ASSERT_TRUE(awaitFiles(1));
-  EXPECT_EQ(ros1::EventLogReader(path, 0).summary().end, kStart + 26 * kSecond);
-  expectSame(read(path), 0, 2000);
-}
-
 TEST_F(FlightRecorderTest, WhatComesAfterARestartIsAnotherRecording) {
   hear(0, 20);
   const std::string path = raise();
@@ -218,13 +206,11 @@ TEST_F(FlightRecorderTest, AtTheEndAnAlarmThatStandsIsWritten) {
   end();
   ASSERT_EQ(files().size(), 1U);
   EXPECT_TRUE(begins(*files().begin(), "shutdown_"));
-}
-
-TEST_F(FlightRecorderTest, AtTheEndAFileDoesNotWaitForWhatFollows) {
-  hear(0, 1);
+  heard_.clear();
+  hear(1, 2);
   const std::string path = raise();
   end();
-  EXPECT_EQ(files().size(), 1U) << "the alarm is in its own file already";
+  EXPECT_EQ(files().size(), 2U) << "the alarm is in its own file, which waits for nothing";
   expectSame(read(path), 0, 100);
 }
 

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -37,32 +36,24 @@ class RecorderFolderTest : public InFolder {
   }
 };
 
-TEST_F(RecorderFolderTest, NamesTellCauseAndTime) {
-  const RecorderFolder folder("/data", "/watch", 1, 1);
-  for (const auto& [cause, name] : std::map<Cause, std::string>{
-           {Cause::kAlarm, "alarm"}, {Cause::kDump, "dump"}, {Cause::kShutdown, "shutdown"}}) {
-    EXPECT_EQ(folder.pathOf(cause, kWallTime), "/data/" + name + "_2026-11-22-05-10-33.123.bag");
-  }
-}
-
-TEST_F(RecorderFolderTest, KnowsTheHomeFolder) {
-  EXPECT_EQ(RecorderFolder("~/logs", "/watch", 1, 1).pathOf(Cause::kAlarm, kWallTime),
-            std::string(std::getenv("HOME")) + "/logs/alarm_2026-11-22-05-10-33.123.bag");
-}
-
-TEST_F(RecorderFolderTest, KnowsTheFolderOfRosAndTheNameOfTheMonitor) {
-  const auto pathWith = [](const std::string& name) {
-    return RecorderFolder("$ROS_HOME/self_awareness/$NAME", name, 1, 1)
-        .pathOf(Cause::kDump, kWallTime);
+TEST_F(RecorderFolderTest, NamesTellCauseAndTimeAndKnowTheFoldersOfRosAndOfTheMonitor) {
+  const auto fileIn = [](const std::string& folder, Cause cause, const std::string& name) {
+    return RecorderFolder(folder, name, 1, 1).pathOf(cause, kWallTime);
   };
+  const std::string time = "_2026-11-22-05-10-33.123.bag";
+  EXPECT_EQ(fileIn("/data", Cause::kAlarm, "/watch"), "/data/alarm" + time);
+  EXPECT_EQ(fileIn("/data", Cause::kShutdown, "/watch"), "/data/shutdown" + time);
+  const std::string home = std::getenv("HOME");
+  EXPECT_EQ(fileIn("~/logs", Cause::kAlarm, "/watch"), home + "/logs/alarm" + time);
+  const std::string of_ros = "$ROS_HOME/self_awareness/$NAME";
   const char* const before = std::getenv("ROS_HOME");
   const std::string ros_home = before != nullptr ? before : "";
   setenv("ROS_HOME", "/data/ros", 1);
-  EXPECT_EQ(pathWith("/robot/watch"),
-            "/data/ros/self_awareness/robot_watch/dump_2026-11-22-05-10-33.123.bag");
+  EXPECT_EQ(fileIn(of_ros, Cause::kDump, "/robot/watch"),
+            "/data/ros/self_awareness/robot_watch/dump" + time);
   unsetenv("ROS_HOME");
-  EXPECT_EQ(pathWith("/watch"), std::string(std::getenv("HOME")) +
-                                    "/.ros/self_awareness/watch/dump_2026-11-22-05-10-33.123.bag");
+  EXPECT_EQ(fileIn(of_ros, Cause::kDump, "/watch"),
+            home + "/.ros/self_awareness/watch/dump" + time);
   if (before != nullptr) {
     setenv("ROS_HOME", ros_home.c_str(), 1);
   }
@@ -74,11 +65,8 @@ TEST_F(RecorderFolderTest, ANameIsGivenOnceInAFolderThatIsCreated) {
   write({"alarm_2026-11-22-05-10-33.123.bag"});
   EXPECT_EQ(folder().pathOf(Cause::kAlarm, kWallTime),
             path("far/recorder/alarm_2026-11-22-05-10-33.124.bag"));
-}
-
-TEST_F(RecorderFolderTest, AFileInItsPlaceIsNamed) {
-  boost::filesystem::create_directory(path("far"));
-  writeFile(path("far/recorder"), "a file");
+  boost::filesystem::remove_all(path("far/recorder"));
+  writeFile(path("far/recorder"), "a file in its place");
   EXPECT_TRUE(
       has(problemOf<std::runtime_error>([this] { folder().create(); }), path("far/recorder")));
 }

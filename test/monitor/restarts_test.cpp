@@ -57,21 +57,16 @@ TEST(Restarts, AreCountedForTenMinutes) {
 TEST(Restarts, AreKnownByTheNamesOfTheModel) {
   Restarts restarts(5 * kSecond);
   const ros1::Encoder fleet = encoder({{"/r[0-9]+/(.*)", "/\\1"}});
+  for (const char* const address : {"http://a:1", "http://a:2"}) {
+    EXPECT_EQ(restarts.see({{"/r7/play_1_1600000000000", address}}, fleet, 0, "0"), Names())
+        << "a player is left out";
+  }
   EXPECT_EQ(restarts.see({{"/r7/player", "http://a:1"}}, fleet, 0, "0"), Names());
   EXPECT_EQ(restarts.see({{"/r7/player", "http://a:2"}}, fleet, kSecond, "1"), Names{"/player"});
   EXPECT_EQ(restarts.count("/player", kSecond), 1U);
   restarts.onHeard("/player", 2 * kSecond);
   EXPECT_EQ(restarts.advance(8 * kSecond, {"/player"}), Names());
   EXPECT_EQ(restarts.advance(8 * kSecond, {}), Names{"/player restarted at 1, back as usual"});
-}
-
-TEST(Restarts, WhoIsLeftOutIsNotFollowed) {
-  Restarts restarts(0);
-  ros1::EncodingRules rules;
-  rules.exclude_sources = {"/tool"};
-  const ros1::Encoder without(rules, [](const core::EventType&) { return core::EventId{0}; });
-  restarts.see({{"/tool", "http://a:1"}}, without, 0, "0");
-  EXPECT_EQ(restarts.see({{"/tool", "http://a:2"}}, without, 1, "1"), Names());
 }
 
 TEST(Restarts, AreForgottenWhenTheClockIsSet) {

@@ -138,30 +138,22 @@ TEST(Session, KnowsTheModelsNamesOfAnotherRobotsNodesAndTopics) {
   EXPECT_TRUE(wanted.own_output.covers("/r7/manager", "/r7/watch/status"));
   ros1::Graph graph;
   graph.topics["/r7/scan"] = {"T", {"/r7/player"}, {"/r7/slam"}};
+  graph.hosts = {{"/r7/player", "base"}};
   session.addEdges(graph, "/r7/self_awareness");
   EXPECT_TRUE(session.graph().hears("/slam", "/player", "/scan"));
+  EXPECT_EQ(session.graph().hostOf("/player"), "base");
 }
 
-TEST(Session, IsCalibratedForTheDetectorThatWasChosen) {
+TEST(Session, NeedsTheCountsAndTheCalibrationOfItsDetector) {
   ros1::TrainedModel trained = model();
   EXPECT_FALSE(ByPaper(trained).calibrated());
   trained.paper_calibration = core::paper::Calibration();
   trained.paper_calibration->threshold = 0.1;
   EXPECT_TRUE(ByPaper(trained).calibrated());
-}
-
-TEST(Session, NeedsTheCountsOfItsDetector) {
   EXPECT_THROW(Quiet{model()}, std::invalid_argument);
   ros1::TrainedModel without = model();
   without.dropCounts();
   EXPECT_THROW(ByPaper{without}, std::invalid_argument);
-}
-
-TEST(Session, SaysWhoseDelaysAreNotWatchedNow) {
-  Quiet session(modelOfAnswers());
-  const std::vector<std::string> words = session.disarmed();
-  EXPECT_NE(std::find(words.begin(), words.end(), "/b on /y after /a on /x"), words.end());
-  EXPECT_TRUE(ByPaper(model()).disarmed().empty());
 }
 
 TEST(Session, SaysTheModeThatTheRobotTells) {
@@ -184,15 +176,16 @@ TEST(Session, SaysTheModeThatTheRobotTells) {
   tell(20 * kSecond, "DOCKED");
   session.detector().onMissed(session.typesOf({"/logic", "/state"}), 21 * kSecond);
   EXPECT_EQ(session.mode(22 * kSecond), "not known (/state)") << "another one may have been told";
-}
-
-TEST(Session, SaysNoModeWhereNobodyTellsIt) {
-  ros1::TrainedModel without = modelWithModes();
-  without.encoding.mode.reset();
-  EXPECT_EQ(Quiet(without).mode(0), "");
+  EXPECT_EQ(Quiet(modelOfAnswers()).mode(0), "") << "nobody tells it";
   ros1::TrainedModel of_paper = model();
   of_paper.encoding.mode = ros1::ModeField{"/state", "data"};
   EXPECT_EQ(ByPaper(of_paper).mode(0), "") << "the paper knows no modes";
+}
+
+TEST(Session, SaysWhoseDelaysAreNotWatchedNow) {
+  const std::vector<std::string> words = Quiet(modelOfAnswers()).disarmed();
+  EXPECT_NE(std::find(words.begin(), words.end(), "/b on /y after /a on /x"), words.end());
+  EXPECT_TRUE(ByPaper(model()).disarmed().empty());
 }
 
 TEST(Session, EverNewEventTypesDoNotFillTheMemory) {

@@ -20,7 +20,7 @@ def _run(argument: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_they_are_about_the_headers_that_the_page_names() -> None:
-    page = (ROOT / 'docs' / 'embedding.md').read_text(encoding='utf-8')
+    page = (ROOT / 'docs' / 'library.md').read_text(encoding='utf-8')
     found = _run('--headers').stdout.split()
     assert set(found) == {f'include/self_awareness/{name}'
                           for name in re.findall(r'`(core/[^`]*\.h)`', page)}

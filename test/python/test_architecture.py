@@ -1,4 +1,4 @@
-"""What the rooms of the C++ sources may include (docs/architecture.md)."""
+"""What the rooms of the C++ sources may include (docs/developers.md)."""
 from __future__ import annotations
 
 import re
@@ -9,23 +9,26 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 
-# By room, what it may include of core's rooms besides itself.
-CORE: Dict[str, Set[str]] = {
-    'stream': set(),
-    'verdict': {'stream'},
-    'paper': {'stream', 'verdict'},
-    'evidence': {'stream', 'verdict'},
-}
-# By room of core/evidence, what it may include of the others. What lies beside the rooms (judge,
-# lanes) may include all of them; of it, the rooms may include the tuning.
-EVIDENCE: Dict[str, Set[str]] = {
-    'count': set(),
-    'watch': {'count', 'tuning'},
-    'channel': {'count', 'watch', 'tuning'},
-    'limits': {'count', 'watch', 'channel', 'tuning'},
-    'explain': {'count', 'watch', 'channel', 'tuning'},
-    'excuse': {'count', 'watch', 'channel', 'tuning', 'explain'},
-    'presence': {'count', 'watch', 'channel', 'tuning', 'explain', 'excuse'},
+# By room, what it may include of the others.
+ROOMS: Dict[str, Set[str]] = {
+    'core/stream': set(),
+    'core/verdict': {'stream'},
+    'core/paper': {'stream', 'verdict'},
+    'core/evidence': {'stream', 'verdict'},
+    # What lies beside the rooms of core/evidence (judge, lanes) may include all of them; of it,
+    # the rooms may include the tuning.
+    'core/evidence/count': set(),
+    'core/evidence/watch': {'count', 'tuning'},
+    'core/evidence/channel': {'count', 'watch', 'tuning'},
+    'core/evidence/limits': {'count', 'watch', 'channel', 'tuning'},
+    'core/evidence/explain': {'count', 'watch', 'channel', 'tuning'},
+    'core/evidence/excuse': {'count', 'watch', 'channel', 'tuning', 'explain'},
+    'core/evidence/presence': {'count', 'watch', 'channel', 'tuning', 'explain', 'excuse'},
+    'ros': {'core'},
+    'node': {'core', 'ros'},
+    'monitor': {'core', 'ros', 'node'},
+    'recorder': {'core', 'ros', 'node'},
+    'python': {'core', 'ros'},
 }
 CHANNEL = 'src/core/evidence/channel'
 LIST_OF_CHANNELS = 'channels_of_the_method.cpp'
@@ -41,16 +44,15 @@ def _included(path: Path) -> List[str]:
     return INCLUDE.findall(path.read_text(encoding='utf-8'))
 
 
-def _core_rooms(path: Path) -> Set[str]:
-    found = (re.fullmatch(r'(?:self_awareness/)?core/(?:(\w+)/)?(?:\w+/)?\w+\.h', name)
-             for name in _included(path))
-    return {match.group(1) or 'training' for match in found if match}
-
-
-def _evidence_rooms(path: Path) -> Set[str]:
-    found = (re.fullmatch(r'(?:self_awareness/)?core/evidence/(\w+)(?:/\w+)?\.h', name)
-             for name in _included(path))
-    return {match.group(1) for match in found if match}
+def _rooms(path: Path, beside: str) -> Set[str]:
+    """Return what a source includes of the rooms in a folder ('': of src)."""
+    found = set()
+    for name in _included(path):
+        match = re.match(rf'(?:self_awareness/)?{beside}(\w+)[/.]', name)
+        # Of roscpp, headers begin with ros/ as well.
+        if match and ((ROOT / 'src' / name).exists() or (ROOT / 'include' / name).exists()):
+            found.add(match[1])
+    return found
 
 
 def _channels() -> List[Path]:
@@ -59,25 +61,19 @@ def _channels() -> List[Path]:
             if re.search(r': public Channel {', path.read_text(encoding='utf-8'))]
 
 
-@pytest.mark.parametrize('room', sorted(CORE))
-def test_rooms_of_the_core_include_what_lies_below(room: str) -> None:
-    sources = _sources(f'include/self_awareness/core/{room}', f'src/core/{room}')
+@pytest.mark.parametrize('room', sorted(ROOMS))
+def test_rooms_include_what_lies_below(room: str) -> None:
+    sources = _sources(f'include/self_awareness/{room}', f'src/{room}')
     assert sources
+    folder, _, name = room.rpartition('/')
     for path in sources:
-        assert _core_rooms(path) <= CORE[room] | {room}, path
-
-
-@pytest.mark.parametrize('room', sorted(EVIDENCE))
-def test_rooms_of_the_evidence_include_what_lies_below(room: str) -> None:
-    sources = _sources(f'include/self_awareness/core/evidence/{room}', f'src/core/evidence/{room}')
-    assert sources
-    for path in sources:
-        assert _evidence_rooms(path) <= EVIDENCE[room] | {room}, path
+        assert _rooms(path, f'{folder}/' if folder else '') <= ROOMS[room] | {name}, path
 
 
 def test_the_evidence_has_no_other_rooms() -> None:
     for folder in ('include/self_awareness/core/evidence', 'src/core/evidence'):
-        assert {path.name for path in (ROOT / folder).iterdir() if path.is_dir()} <= set(EVIDENCE)
+        assert {path.name for path in (ROOT / folder).iterdir() if path.is_dir()
+                } <= {room.rpartition('/')[2] for room in ROOMS}
 
 
 def test_no_channel_knows_another_one() -> None:
@@ -120,28 +116,6 @@ def test_public_headers_include_no_others() -> None:
         for name in _included(path):
             assert not re.match(r'(core|ros|monitor)/', name) or not (
                 ROOT / 'src' / name).exists(), (path, name)
-
-
-# By room beside the core, what it may include of the others.
-ROOMS: Dict[str, Set[str]] = {
-    'ros': {'core'},
-    'node': {'core', 'ros'},
-    'monitor': {'core', 'ros', 'node'},
-    'recorder': {'core', 'ros', 'node'},
-    'python': {'core', 'ros'},
-}
-
-
-@pytest.mark.parametrize('room', sorted(ROOMS))
-def test_rooms_beside_the_core_include_what_lies_below(room: str) -> None:
-    sources = _sources(f'include/self_awareness/{room}', f'src/{room}')
-    assert sources
-    for path in sources:
-        for name in _included(path):
-            of = re.match(r'(?:self_awareness/)?(core|ros|node|monitor|recorder|python)/', name)
-            # Of roscpp, headers begin with ros/ as well.
-            if of and ((ROOT / 'src' / name).exists() or (ROOT / 'include' / name).exists()):
-                assert of.group(1) in ROOMS[room] | {room}, (path, name)
 
 
 def test_no_part_of_the_monitor_knows_another_one() -> None:

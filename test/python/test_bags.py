@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 import rosbag
-import rospy
-from conftest import robot
+from conftest import put, robot
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import Image
 
@@ -22,11 +21,8 @@ def image_bag(tmp_path_factory: pytest.TempPathFactory) -> str:
     image = Image(data=bytes(_IMAGE_BYTES))
     with rosbag.Bag(path, 'w') as bag:
         for i in range(600):
-            stamp = rospy.Time.from_sec(1000 + 0.1 * i)
             for topic, message in [('/image', image)] * (i % 10 == 0) + [('/rosout', Log())]:
-                bag.write(topic, message, stamp, connection_header={
-                    'topic': topic, 'callerid': '/camera', 'type': message._type,
-                    'md5sum': message._md5sum, 'message_definition': message._full_text})
+                put(bag, '/camera', topic, message, 1000 + 0.1 * i)
     return path
 
 

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import pickle
 from pathlib import Path
+from typing import Callable
 
 import pytest
 import yaml
@@ -22,20 +23,27 @@ def test_the_example_shows_every_key() -> None:
                     'exclude_sources', 'type_fields', 'mode'}
 
 
-@pytest.mark.parametrize('text', ['', '# nothing but a comment\n', '{}'])
-def test_keys_left_out_keep_their_default(tmp_path: Path, text: str) -> None:
-    file = tmp_path / 'e.yaml'
-    file.write_text(text)
-    assert encoding_file.load(str(file)) == EncodingRules.defaults()
+@pytest.fixture
+def read(tmp_path: Path) -> Callable[[str], EncodingRules]:
+    """Return a function that reads a text as an encoding file, e.yaml."""
+    def read(text: str) -> EncodingRules:
+        (tmp_path / 'e.yaml').write_text(text)
+        return encoding_file.load(str(tmp_path / 'e.yaml'))
+    return read
 
 
-def test_keys_are_read(tmp_path: Path) -> None:
-    file = tmp_path / 'e.yaml'
-    file.write_text('source: none\ninclude_topics: ["/a.*"]\nexclude_topics: []\n'
-                    'include_sources: [/b]\nexclude_sources: []\ntype_fields: {a/B: c.d}\n'
-                    "rename: [['/r(.)/x', '/\\1'], [/a, /b]]\n"
-                    'mode: {topic: /a1, field: s.t}\n')
-    rules = encoding_file.load(str(file))
+@pytest.mark.parametrize('text', ['', '# nothing but a comment\n', '{}', 'mode: {}'])
+def test_keys_left_out_keep_their_default(read: Callable[[str], EncodingRules], text: str) -> None:
+    rules = read(text)
+    assert rules == EncodingRules.defaults()
+    assert rules.mode is None and encoding_file.values(rules)['mode'] == {}
+
+
+def test_keys_are_read(read: Callable[[str], EncodingRules]) -> None:
+    rules = read('source: none\ninclude_topics: ["/a.*"]\nexclude_topics: []\n'
+                 'include_sources: [/b]\nexclude_sources: []\ntype_fields: {a/B: c.d}\n'
+                 "rename: [['/r(.)/x', '/\\1'], [/a, /b]]\n"
+                 'mode: {topic: a1, field: s.t}\n')
     assert rules.source == 'none'
     assert (rules.include_topics, rules.exclude_topics) == (['/a.*'], [])
     assert (rules.include_sources, rules.exclude_sources) == (['/b'], [])
@@ -47,24 +55,13 @@ def test_keys_are_read(tmp_path: Path) -> None:
     assert encoding_file.values(rules)['rename'] == [['/r(.)/x', '/\\1'], ['/a', '/b']]
 
 
-def test_a_field_may_have_classes(tmp_path: Path) -> None:
-    file = tmp_path / 'e.yaml'
-    file.write_text('type_fields: {a/B: c.d, e/F: {field: g, classes: 4}}\n')
-    rules = encoding_file.load(str(file))
+def test_a_field_may_have_classes(read: Callable[[str], EncodingRules]) -> None:
+    rules = read('type_fields: {a/B: c.d, e/F: {field: g, classes: 4}}\n')
     assert rules.type_fields == {'a/B': 'c.d', 'e/F': 'g'}
     assert rules.classes == {'e/F': (4, [])}
     assert encoding_file.values(rules)['type_fields'] == {
         'a/B': 'c.d', 'e/F': {'field': 'g', 'classes': 4, 'bounds': []}}
     assert pickle.loads(pickle.dumps(rules)) == rules
-
-
-@pytest.mark.parametrize('text', ['', 'mode: {}'])
-def test_nobody_tells_a_mode_unless_a_file_says_so(tmp_path: Path, text: str) -> None:
-    file = tmp_path / 'e.yaml'
-    file.write_text(text)
-    rules = encoding_file.load(str(file))
-    assert rules.mode is None
-    assert encoding_file.values(rules)['mode'] == {}
 
 
 @pytest.mark.parametrize('text, key', [
@@ -94,16 +91,13 @@ def test_nobody_tells_a_mode_unless_a_file_says_so(tmp_path: Path, text: str) ->
     ('mode: {topic: /clock, field: clock}', 'mode'),
     ('include_topics: [/a]\nmode: {topic: /b, field: data}', 'mode'),
 ])
-def test_an_error_names_the_file_and_the_key(tmp_path: Path, text: str, key: str) -> None:
-    file = tmp_path / 'e.yaml'
-    file.write_text(text)
+def test_an_error_names_the_file_and_the_key(read: Callable[[str], EncodingRules], text: str,
+                                             key: str) -> None:
     with pytest.raises(ValueError, match=f'e.yaml: {key}: '):
-        encoding_file.load(str(file))
+        read(text)
 
 
 @pytest.mark.parametrize('text', ['[a', '- a\n', 'text', '"\\x"', 'a: !!python/name:os.system'])
-def test_what_is_no_mapping_is_refused(tmp_path: Path, text: str) -> None:
-    file = tmp_path / 'e.yaml'
-    file.write_text(text)
+def test_what_is_no_mapping_is_refused(read: Callable[[str], EncodingRules], text: str) -> None:
     with pytest.raises(ValueError, match='e.yaml: '):
-        encoding_file.load(str(file))
+        read(text)

@@ -275,25 +275,3 @@ sys.exit(cli.run(argparse.ArgumentParser(), work, None))
         [sys.executable, '-c', program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         check=False, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
     assert (done.returncode, done.stdout, done.stderr) == (130, '', '')
-
-
-def test_a_training_goes_on_where_its_processes_are_killed(four_bags: List[str],
-                                                           tmp_path: Path) -> None:
-    chance = random.Random(3)
-    output = tmp_path / 'm'
-    with training(four_bags, output) as process:
-        process.communicate()
-    expected, longest_s = model(output), 0.0
-    for _ in range(max(KILLS // 5, 3)):
-        output.unlink()
-        with training(four_bags, output) as process:
-            begin = time.monotonic()
-            for _ in range(2):
-                time.sleep(chance.uniform(0.0, 0.2))
-                for child in children(process.pid)[:1]:
-                    os.kill(child, signal.SIGKILL)
-            _, said = process.communicate(timeout=_LONGEST_S)
-            longest_s = max(longest_s, time.monotonic() - begin)
-        assert process.returncode == 0 and said == ''
-        assert model(output) == expected
-    print(f'longest time from a killed process to the end: {longest_s:.2f} s')

@@ -69,11 +69,8 @@ def _configuration() -> Dict[str, Any]:
     return found
 
 
-def test_lists_every_parameter_that_is_read() -> None:
+def test_manual_and_configuration_have_every_parameter_that_is_read() -> None:
     assert set(_entries(_manual())) == set(_readings())
-
-
-def test_the_configuration_has_every_parameter() -> None:
     assert set(_configuration()) == set(_readings()) - NOT_IN_CONFIGURATION
 
 
@@ -109,15 +106,12 @@ def _advertised(call: str) -> List[str]:
     return re.findall(rf'private_node_handle_?\s*\.{call}\(\s*"(\w+)"', code)
 
 
-def test_the_page_on_security_names_the_services_that_there_are() -> None:
-    page = (ROOT / 'docs' / 'security.md').read_text(encoding='utf-8')
-    named = re.findall(r'^\| services \((.*?)\) \|', page, re.MULTILINE)
-    assert set(re.findall(r'`~(\w+)`', ' '.join(named))) == set(_advertised('advertiseService'))
-
-
-def test_lists_topics_and_services() -> None:
+def test_manual_and_page_list_topics_and_services() -> None:
     topics, services = _advertised('advertise<[^>]*>'), _advertised('advertiseService')
     assert topics and services
     listed = set(re.findall(r'- `~(\w+)` \([\w/]+\):', _manual()))
     assert listed == {*topics, *services}
     assert '- `/diagnostics` (diagnostic_msgs/DiagnosticArray):' in _manual()
+    page = (ROOT / 'docs' / 'monitor.md').read_text(encoding='utf-8')
+    named = re.findall(r'^\| services \((.*?)\) \|', page, re.MULTILINE)
+    assert set(re.findall(r'`~(\w+)`', ' '.join(named))) == set(services)

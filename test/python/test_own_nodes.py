@@ -6,7 +6,7 @@ from typing import Dict, Set, Tuple, Type
 
 import genpy
 import rosbag
-import rospy
+from conftest import put
 from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
@@ -20,10 +20,7 @@ def _record(path: Path, topics: Dict[Tuple[str, str], Type[genpy.Message]]) -> s
     with rosbag.Bag(str(path), 'w') as bag:
         for tick in range(600):
             for number, ((source, topic), kind) in enumerate(topics.items()):
-                bag.write(topic, kind(), rospy.Time(1000, 0) + rospy.Duration.from_sec(
-                    0.1 * tick + 0.001 * number), connection_header={
-                        'callerid': source, 'topic': topic, 'type': kind._type,
-                        'md5sum': kind._md5sum, 'message_definition': kind._full_text})
+                put(bag, source, topic, kind(), 1000.0 + 0.1 * tick + 0.001 * number)
     return str(path)
 
 

@@ -122,16 +122,6 @@ def test_the_checkout_is_a_copy_and_the_recordings_can_be_read(debian: Path) -> 
 
 
 @needs_root
-def test_without_the_recordings_there_is_no_folder_of_them(debian: Path) -> None:
-    (debian / 'root' / 'shared').mkdir()  # of a run before
-    environment = {**_environment(debian), 'SELF_AWARENESS_SHARED': str(debian / 'gone')}
-    done = subprocess.run((SCRIPT, 'bookworm', 'bash', '-c', '[ ! -e /root/shared ]'),
-                          stdout=subprocess.PIPE, text=True, env=environment, timeout=LONG_S)
-    assert done.returncode == 0
-    assert f'There is no folder {debian}/gone' in done.stdout
-
-
-@needs_root
 def test_who_is_not_root_is_told_at_once(debian: Path) -> None:
     done = subprocess.run(('unshare', '--user', SCRIPT, 'bookworm', 'true'),
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -151,17 +141,20 @@ def _text(name: str) -> str:
     return (ROOT / name).read_text(encoding='utf-8')
 
 
+def _table() -> str:
+    return _text('docs/developers.md').partition('## Platforms')[2].partition('\n## ')[0]
+
+
 def test_the_pages_agree_on_what_is_tried() -> None:
-    """The page of reliability has the table; others name no other versions."""
-    table = _text('docs/reliability.md').partition('## Platforms')[2].partition('\n## ')[0]
+    """The page of developers has the table; others name no other versions."""
     for release in RELEASES:
-        assert f'`scripts/test_platform.sh {release}`' in table
-    for page in ('README.md', 'docs/embedding.md', 'CONTRIBUTING.md'):
-        assert 'reliability.md#platforms' in _text(page), page
+        assert f'`scripts/test_platform.sh {release}`' in _table()
+    for page in ('README.md', 'docs/library.md', 'CONTRIBUTING.md'):
+        assert 'developers.md#platforms' in _text(page), page
 
 
 def test_the_oldest_versions_are_the_same_everywhere() -> None:
-    table = _text('docs/reliability.md').partition('## Platforms')[2].partition('\n## ')[0]
+    table = _table()
     script = _text('scripts/near_noetic.sh')
     config = configparser.ConfigParser()
     config.read(str(ROOT / 'setup.cfg'))
@@ -176,5 +169,5 @@ def test_the_oldest_versions_are_the_same_everywhere() -> None:
     assert cmake is not None
     for lists in ('CMakeLists.txt', 'src/core/CMakeLists.txt'):
         assert f'cmake_minimum_required(VERSION {cmake[1]})' in _text(lists)
-    assert f'CMake {cmake[1]}' in _text('docs/embedding.md')
-    assert 'g++ 9' in _text('docs/embedding.md') and 'g++-9' in script
+    assert f'CMake {cmake[1]}' in _text('docs/library.md')
+    assert 'g++ 9' in _text('docs/library.md') and 'g++-9' in script

@@ -67,28 +67,17 @@ def test_all_but_the_evaluation_is_installed() -> None:
     assert listed == {name for name in packages if _package(name) != EVALUATION}
 
 
-def test_what_is_installed_needs_no_evaluation(graph: Dict[str, Set[str]]) -> None:
+def test_packages_need_only_what_they_may(graph: Dict[str, Set[str]]) -> None:
+    """What is installed no evaluation; only programs the simulated robot, or other programs."""
     for name, needed in graph.items():
+        packages, is_program = {_package(each) for each in needed}, name.startswith(PROGRAMS)
         if _package(name) != EVALUATION:
-            assert EVALUATION not in map(_package, needed), name
-
-
-def test_only_programs_of_the_package_need_the_simulated_robot(graph: Dict[str, Set[str]]) -> None:
-    for name, needed in graph.items():
-        if _package(name) == LIBRARY and not name.startswith(PROGRAMS):
-            assert ROBOT not in map(_package, needed), name
-
-
-def test_only_programs_and_the_evaluation_need_programs(graph: Dict[str, Set[str]]) -> None:
-    for name, needed in graph.items():
-        if _package(name) != EVALUATION and not name.startswith(PROGRAMS):
+            assert EVALUATION not in packages, name
+        if _package(name) == LIBRARY and not is_program:
+            assert ROBOT not in packages, name
+        if _package(name) != EVALUATION and not is_program:
             assert not [module for module in needed if module.startswith(PROGRAMS)], name
 
 
 def test_no_module_needs_one_that_needs_it(graph: Dict[str, Set[str]]) -> None:
     assert _circle(graph) == []
-
-
-def test_the_search_for_circles_finds_one() -> None:
-    assert _circle({'a': {'b'}, 'b': {'c'}, 'c': {'b'}, 'd': {'a'}}) == ['a', 'b', 'c', 'd']
-    assert _circle({'a': {'b', 'c'}, 'b': {'c'}, 'c': set()}) == []

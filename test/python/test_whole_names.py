@@ -5,11 +5,10 @@ from pathlib import Path
 from typing import Callable, Iterable, List
 
 import pytest
-from conftest import Message, jittery_robot, write_bag
+from conftest import Message, jittery_robot, trained, write_bag
 
-from self_awareness import (EncodingRules, TrainedModel, encoding_file, load, read_events,
-                            recorded_types)
-from self_awareness.commands import convert, info, train
+from self_awareness import EncodingRules, TrainedModel, load, recorded_types
+from self_awareness.commands import convert, info
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 LENGTH_S = 40.0
@@ -40,7 +39,7 @@ def _model(tmp_path_factory: pytest.TempPathFactory) -> str:
                 (TYPED[0], AS_IT_IS), (TYPED[0], TYPED[0]), (TYPED[1], TYPED[1]),
                 (some, AS_IT_IS)], 1)]
     path = str(folder / 'm')
-    assert train.main([*bags, '-o', path]) == 0
+    trained(bags, Path(path))
     return path
 
 
@@ -61,13 +60,6 @@ def test_a_death_is_found_in_bags_of_any_names(model: str, tmp_path: Path, topic
     assert ('silent', '/laser') in {(alarm.kind, alarm.culprit) for alarm in judge(crash)}
 
 
-def test_two_connections_that_are_one_topic_are_one(tmp_path: Path) -> None:
-    messages = [(stamp, source, name[1:] if place % 2 else name)
-                for place, (stamp, source, name) in enumerate(jittery_robot(1.0, 20.0, 1))]
-    read = read_events(write_bag(tmp_path / 'a.bag', messages), EncodingRules())
-    assert len(read.event_types) == 3 and len(read.stamps) == len(messages)
-
-
 def test_logs_and_graphs_have_whole_names(tmp_path: Path) -> None:
     bag = write_bag(tmp_path / 'a.bag', typed_robot(1000.0, TYPED[0]))
     RobotGraph({'scan': {'laser'}}, {'/scan': {'/slam'}}).save(graph_file(bag))
@@ -79,13 +71,3 @@ def test_logs_and_graphs_have_whole_names(tmp_path: Path) -> None:
     assert recorded_types(log, rules, 0) == recorded_types(bag, rules)
     assert sorted((kind.source, kind.scope) for kind in recorded_types(bag, rules)) == [
         ('/battery', '/charge'), ('/laser', '/scan'), ('/slam', '/map')]
-
-
-def test_rules_are_typed_with_or_without_the_first_slash(tmp_path: Path) -> None:
-    bag = write_bag(tmp_path / 'a.bag', typed_robot(1000.0, TYPED[0]))
-    for name in ('scan', '/scan'):
-        path = tmp_path / 'encoding.yaml'
-        path.write_text(f'include_topics: [{name}]\nmode: {{topic: {name}, field: data}}\n')
-        rules = encoding_file.load(str(path))
-        assert rules.mode == ('/scan', 'data')
-        assert [kind.scope for kind in recorded_types(bag, rules)] == ['/scan']

@@ -66,8 +66,10 @@ def test_results_come_in_order_whoever_is_ready_first(tmp_path: Path) -> None:
 def test_an_error_comes_when_it_is_its_turn(workers: Workers) -> None:
     results = workers.map(fail_at_two, None, range(5), 'test')
     assert [next(results), next(results)] == [0, 1]
-    with pytest.raises(ValueError, match='two is too much'):
+    with pytest.raises(ValueError, match='two is too much') as error:
         next(results)
+    if isinstance(workers, Processes):
+        assert 'fail_at_two' in str(error.value.__cause__), 'where it was raised'
 
 
 def test_work_begins_only_a_little_ahead(tmp_path: Path) -> None:
@@ -78,8 +80,7 @@ def test_work_begins_only_a_little_ahead(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize('tasks, processes, batches', [
-    (1, 1, 1), (2, 2, 2), (6, 2, 2), (16, 2, 2), (17, 2, 3), (49, 2, 7), (1000, 2, 125),
-    (30, 20, 20), (1000, 20, 50), (10000, 20, 500)])
+    (1, 1, 1), (2, 2, 2), (16, 2, 2), (17, 2, 3), (49, 2, 7), (30, 20, 20), (10000, 20, 500)])
 def test_batches_are_few_and_not_long(tasks: int, processes: int, batches: int) -> None:
     assert Processes(processes).batches(tasks) == batches
     assert InProcess().batches(tasks) == tasks
@@ -120,12 +121,6 @@ LONG = 10_000_000
 def answer_at_length(folder: Path, number: int) -> Any:
     (folder / f'{number}').write_text(str(os.getpid()))
     return bytes(LONG) if number else 0
-
-
-def test_an_error_says_where_it_was_raised() -> None:
-    with pytest.raises(ValueError) as error:
-        list(Processes(2).map(fail_at_two, None, range(3), 'test'))
-    assert 'fail_at_two' in str(error.value.__cause__)
 
 
 @pytest.mark.parametrize('whom', [os.kill, os.killpg])

@@ -4,8 +4,6 @@
 
 #include <set>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace self_awareness::ros1 {
 namespace {
@@ -68,17 +66,6 @@ TEST(GraphOfTheRobot, AMonitorInAManagerOfTheRobotHidesNoSubscription) {
   EXPECT_TRUE(missingIn(graph, encoder, {{"/manager", "/image"}}).empty());
 }
 
-TEST(GraphOfTheRobot, IsKnownFromEachChangeOn) {
-  std::vector<std::pair<std::int64_t, std::size_t>> seen;
-  forEachGraph({{1, {{"/a", {"", {"/x"}, {}}}, {"/b", {"", {"/x"}, {"/y"}}}}},
-                {5, {{"/b", {"", {"/x"}, {}}}}}},
-               [&](std::int64_t stamp, const Graph& graph) {
-                 EXPECT_EQ(graph.topics.size(), 2U);
-                 seen.emplace_back(stamp, graph.topics.at("/b").subscribers.size());
-               });
-  EXPECT_EQ(seen, (std::vector<std::pair<std::int64_t, std::size_t>>{{1, 1}, {5, 0}}));
-}
-
 TEST(GraphOfTheRobot, KnowsOnWhichComputersSourcesRun) {
   EXPECT_EQ(hostIn("http://base:4242/"), "base");
   EXPECT_EQ(hostIn("http://10.0.0.2:1/"), "10.0.0.2");
@@ -90,21 +77,6 @@ TEST(GraphOfTheRobot, KnowsOnWhichComputersSourcesRun) {
   addEdges(graph, "/self_awareness", Encoder({}, nullptr), edges);
   EXPECT_EQ(edges.hostOf("/laser"), "base");
   EXPECT_EQ(edges.hostOf("/view"), "") << "it runs on two";
-}
-
-TEST(GraphOfTheRobot, IsOfTheNamesThatTheEncodingGives) {
-  EncodingRules rules;
-  rules.renames = {{"/r[0-9]+/(.*)", "/\\1"}};
-  const Encoder encoder(rules, nullptr);
-  Graph graph;
-  graph.topics["/r7/scan"] = {"T", {"/r7/laser"}, {"/r7/slam_4242_1600000000000"}};
-  graph.topics["/r7/debug"] = {"T", {"/r7/laser"}, {}};
-  graph.hosts = {{"/r7/laser", "base"}};
-  core::SourceGraph edges;
-  addEdges(graph, "/self_awareness", encoder, edges);
-  EXPECT_TRUE(edges.hears("/slam", "/laser", "/scan"));
-  EXPECT_EQ(edges.hostOf("/laser"), "base");
-  EXPECT_EQ(unheardIn(graph, encoder), (Publications{{"/laser", "/debug"}}));
 }
 
 }  // namespace

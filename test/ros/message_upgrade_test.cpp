@@ -5,12 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "ros/message_check.h"
-#include "self_awareness/EventLogGraph.h"
+#include "../problem.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -23,24 +21,16 @@ std::string bytesOf(const std::string& text) {
   return bytesOf(static_cast<std::uint32_t>(text.size())) + text;
 }
 
-MessageUpgrade upgradeOf(const std::string& from, const std::string& to) {
-  return {MessageDefinition(from, "test/M"), MessageDefinition(to, "test/M")};
-}
-
 std::string upgraded(const std::string& from, const std::string& to, const std::string& message) {
-  const std::vector<std::uint8_t> bytes = upgradeOf(from, to).apply(
-      reinterpret_cast<const std::uint8_t*>(message.data()), message.size());
+  const MessageUpgrade upgrade(MessageDefinition(from, "test/M"), MessageDefinition(to, "test/M"));
+  const std::vector<std::uint8_t> bytes =
+      upgrade.apply(reinterpret_cast<const std::uint8_t*>(message.data()), message.size());
   return {bytes.begin(), bytes.end()};
 }
 
 std::string errorOf(const std::string& from, const std::string& to,
                     const std::string& message = "") {
-  try {
-    upgraded(from, to, message);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return problemOf([&] { upgraded(from, to, message); });
 }
 
 const std::string kTrack = "====\nMSG: test/Track\n";
@@ -87,26 +77,11 @@ TEST(MessageUpgrade, AFieldOfAnotherTypeIsAnError) {
   for (const char* other : {"uint64 limit", "uint32[] limit", "uint32[2] limit", "string limit",
                             "Track limit\n====\nMSG: test/Track\nuint32 x"}) {
     const std::string error = errorOf(std::string(other) + "\n", "uint32 limit\n", bytesOf(1));
-    EXPECT_EQ(error.rfind("field limit of test/M is of the type ", 0), 0U) << error;
+    EXPECT_TRUE(begins(error, "field limit of test/M is of the type "));
   }
   EXPECT_NE(errorOf("Track[] t\n" + kTrack + "uint8 channel\n",
                     "Track[] t\n" + kTrack + "uint16 channel\n"),
             "");
-}
-
-TEST(MessageUpgrade, AMessageOfThisVersionStaysAsItIs) {
-  namespace traits = ros::message_traits;
-  self_awareness::EventLogGraph graph;
-  graph.stamp = ros::Time(3, 4);
-  graph.topics.resize(2);
-  graph.topics[1].topic = "/scan";
-  graph.topics[1].publishers = {"/laser", "/other"};
-  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(graph));
-  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  ros::serialization::serialize(stream, graph);
-  const MessageDefinition definition(traits::definition<self_awareness::EventLogGraph>(),
-                                     traits::datatype<self_awareness::EventLogGraph>());
-  EXPECT_EQ(MessageUpgrade(definition, definition).apply(bytes.data(), bytes.size()), bytes);
 }
 
 TEST(BadUpgrade, AMessageIsRefusedWhereverItIsCut) {
@@ -120,12 +95,14 @@ TEST(BadUpgrade, AMessageIsRefusedWhereverItIsCut) {
   EXPECT_EQ(errorOf(from, to, whole + "x"), "there is more in it than belongs to it");
 }
 
-TEST(BadUpgrade, ALengthThatLiesAsksForNoMemory) {
-  const std::string to = "Track[] rest\n" + kTrack + "string name\nuint8[1000] added\n";
+TEST(BadUpgrade, NumbersThatLieOrGrowAskForNoMemory) {
+  const std::string from = "Track[] rest\n" + kTrack + "uint8 a\n";
+  const std::string to = "Track[] rest\n" + kTrack + "uint8 a\nuint8[1000000] added\n";
   for (const std::uint32_t length : {0xFFFFFFFFU, 0x3FFFFFFFU, 2U}) {
-    EXPECT_EQ(errorOf("Track[] rest\n" + kTrack + "string name\n", to, bytesOf(length)),
-              "a length in it is wrong");
+    EXPECT_EQ(errorOf(from, to, bytesOf(length)), "a length in it is wrong");
   }
+  EXPECT_EQ(errorOf(from, to, bytesOf(2000) + std::string(2000, 'x')),
+            "it is larger than a message can be");
 }
 
 TEST(BadUpgrade, ElementsOfNoBytesAreRefused) {
@@ -135,13 +112,6 @@ TEST(BadUpgrade, ElementsOfNoBytesAreRefused) {
   EXPECT_EQ(errorOf(from, to, bytesOf(0xFFFFFFFFU)),
             "an array in it has elements without any field");
   EXPECT_EQ(errorOf(from, to, bytesOf(0U)), "");
-}
-
-TEST(BadUpgrade, AMessageThatWouldBeTooLargeIsRefused) {
-  const std::string to = "Track[] rest\n" + kTrack + "uint8 a\nuint8[1000000] added\n";
-  EXPECT_EQ(
-      errorOf("Track[] rest\n" + kTrack + "uint8 a\n", to, bytesOf(2000) + std::string(2000, 'x')),
-      "it is larger than a message can be");
 }
 
 TEST(BadUpgrade, AFieldOfNoBytesTakesNoTime) {

@@ -8,7 +8,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import MonitorListener, again_if_disturbed, await_condition, talker
-from monitor_case import TrainedCase, accept, subscribers
+from monitor_case import TrainedCase, accept, base, driver, subscribers
 from self_awareness.msg import SelfAwareness
 
 NODE = '/self_awareness'
@@ -31,7 +31,7 @@ class AcceptTest(TrainedCase):
     @again_if_disturbed
     def test_a_new_node_is_told_once_and_accepted_for_other_starts(self) -> None:
         file = self.path('model.accepted')
-        with talker('base', '/odom', 10), talker('driver', '/scan', 12.5):
+        with base(), driver():
             with self.trained_monitor() as monitor, MonitorListener() as listener:
                 listener.await_heard('/driver', '/base')
                 with talker('joystick', '/joy', 10):
@@ -70,8 +70,8 @@ class AcceptTest(TrainedCase):
 
     @again_if_disturbed
     def test_what_stands_is_accepted_until_it_is_trained(self) -> None:
-        with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
-            with talker('driver', '/scan', 12.5):
+        with self.trained_monitor(), MonitorListener() as listener, base():
+            with driver():
                 listener.await_heard('/driver', '/base')
             alarm = listener.await_alarm()
             self.assertEqual(alarm.component, '/driver')

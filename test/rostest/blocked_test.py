@@ -7,8 +7,8 @@ import sys
 import rospy
 import rostest
 
-from live_system import MonitorListener, Process, again_if_disturbed, await_condition, talker
-from monitor_case import TrainedCase, accept
+from live_system import MonitorListener, Process, again_if_disturbed, await_condition
+from monitor_case import TrainedCase, accept, base
 from self_awareness.msg import SelfAwareness
 
 # Without a queue_size, publish() waits until all have read.
@@ -42,7 +42,7 @@ class BlockedTest(TrainedCase):
 
     @again_if_disturbed
     def test_who_waits_for_a_subscriber_that_hangs_is_told_with_it(self) -> None:
-        with talker('base', '/odom', 10), node(CAMERA), node(VIEWER) as viewer, \
+        with base(), node(CAMERA), node(VIEWER) as viewer, \
                 self.trained_monitor(unknown='ignore'), MonitorListener() as listener:
             listener.await_heard('/camera', '/base')
             accept(component='/camera', topic='/image', kind='other size')  # the bags have none

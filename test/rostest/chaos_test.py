@@ -10,8 +10,7 @@ import sys
 import threading
 import time
 from contextlib import ExitStack
-from typing import Iterator, List, Optional, Set, Tuple
-from xmlrpc.client import ServerProxy
+from typing import List, Optional, Set, Tuple
 
 import rosgraph
 import rospy
@@ -22,7 +21,7 @@ from std_msgs.msg import Empty, String
 
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          operation, ours, pid_of, run_program, talker, write_bag)
-from monitor_case import Talker, TrainedCase, publishers
+from monitor_case import MadeUpPublishers, Talker, TrainedCase, driver, publishers
 from self_awareness.msg import SelfAwareness
 
 Message = Tuple[float, str, str]
@@ -38,11 +37,6 @@ RESPAWNED = """<launch>
 </launch>
 """
 OVERLOADED = 'overloaded: '
-
-
-def driver() -> Process:
-    """The node that dies; its periods vary as those of operation()."""
-    return talker('driver', '/scan', 12.5)
 
 
 def storm(**parameters: float) -> Process:
@@ -61,33 +55,6 @@ def bursts(burst: int, seed: int) -> List[Message]:
     return [(stamp + 0.001 * k / burst, source, topic)
             for stamp, source, topic in operation([('/storm', '/storm0', 0.1)], 120, seed)
             for k in range(burst)]
-
-
-class OtherString(String):
-    """A type of the same name as std_msgs/String, with another md5 sum and definition."""
-
-    _md5sum = '0123456789abcdef0123456789abcdef'
-    _full_text = 'string data\nstring more\n'
-
-
-class MadeUpPublishers:
-    """Topics and nodes that only the master knows: it takes any name, and any address."""
-
-    def __init__(self, names: List[str], uri: str = 'http://127.0.0.1:9') -> None:
-        self._names = names
-        self._uri = uri
-
-    def __enter__(self) -> 'MadeUpPublishers':
-        self._call('registerPublisher', 'std_msgs/String', self._uri)
-        return self
-
-    def __exit__(self, *_) -> None:
-        self._call('unregisterPublisher', self._uri)
-
-    def _call(self, method: str, *arguments: str) -> None:
-        master = ServerProxy(rosgraph.get_master_uri())
-        for number, name in enumerate(self._names):
-            getattr(master, method)('/made_up_{}'.format(number), name, *arguments)
 
 
 class ChaosTest(TrainedCase):
@@ -120,55 +87,50 @@ class ChaosTest(TrainedCase):
     def check_no_alarm(self, listener: MonitorListener) -> None:
         self.assertEqual(listener.errors, [])
 
-    def check_alarm_names(self, listener: MonitorListener, victim: Process,
-                          number: int = signal.SIGKILL) -> None:
+    def check_alarm_names(self, listener: MonitorListener, victim: Process) -> None:
         """The monitor still finds what is wrong: the driver is killed."""
-        victim.send(number)
+        victim.send(signal.SIGKILL)
         alarm = listener.await_alarm(30)
         self.assertEqual((alarm.suspects[0].source, alarm.suspects[0].scope),
                          ('/driver', '/scan'))
 
-    # Names
+    # Names and messages
 
     @again_if_disturbed
-    def test_names_that_nobody_can_subscribe_to_are_named_once_and_left_out(self) -> None:
+    def test_names_and_sizes_that_nobody_would_choose(self) -> None:
+        """What cannot be listened to is named once and left out; all else is heard."""
         longest = '/' + 999 * 'a'
         illegal = ['/foo-bar', '/\xfc', longest + 'a', '/' + 30000 * 'b']
         # The master refuses these. A bag may have them.
         trained = ['/scan-front', '/a:b', '~x', '/with_blank ']
-        model = self.model(topics=('/a', *trained))
-        with Talker('/a'), Talker(longest), MadeUpPublishers(illegal), \
+        model = self.model(topics=('/a', *trained), threshold=-1.0,
+                           type_fields={'std_msgs/String': 'data'})
+        large = rospy.Publisher('/large', String, queue_size=1)
+        self.addCleanup(large.unregister)
+        with Talker('/a'), Talker(longest), Talker('/empty', Empty), MadeUpPublishers(illegal), \
+                ours('storm', '__name:=' + 1000 * 'n', '_rate:=50'), \
                 self.monitor(model, subscribe='all') as monitor, MonitorListener() as listener:
             listener.await_settled()
+            await_condition('the monitor listens', large.get_num_connections, 20)
+            pid = pid_of('/self_awareness')
+            before = resident_bytes(pid)
+            for _ in range(4):
+                large.publish('x' * 64 * MEGABYTE)
             await_condition('all are heard', lambda: (
-                listener.value('monitor', 'publishers heard') == '4'), 20)
-            listener.await_heartbeats(3)
-            self.assertTrue(monitor.running())
+                listener.value('monitor', 'publishers heard') == '6'), 40)
+            too_long = re.compile("'/nnn.* is too long; its messages are left out")
+            await_condition('it is named', lambda: too_long.search(monitor.output), 30)
+            listener.next_statuses(10)
+            self.assertLess(resident_bytes(pid), before + 150 * MEGABYTE)
             self.check_no_alarm(listener)
             monitor.stop()  # what it logs comes when the buffer is emptied
+            self.assertEqual(len(too_long.findall(monitor.output)), 1)
             left_out = re.findall(r"the topic '(.*)': its name is illegal; it is left out",
                                   monitor.output)
             # A log on the terminal is of ASCII, and every other byte becomes a question mark; on
             # Debian 13 it is shown.
             self.assertEqual(sorted(name.replace('\xfc', '??') for name in left_out), sorted(
                 name[:100].replace('\xfc', '??') for name in illegal + trained))
-
-    @again_if_disturbed
-    def test_nodes_of_this_package_are_known_whatever_their_names(self) -> None:
-        with driver(), self.judging_monitor(), MonitorListener() as listener:
-            self.await_heard(listener)
-            with self.judging_monitor(name='another'), \
-                    ours('record_events', '__name:=third',
-                         '_subscribe:=all', '_min_space:=0',
-                         '_output:=' + self.path('log')), \
-                    MonitorListener('/another') as another:
-                self.await_heard(another)
-                await_condition('the recorder has begun', lambda: publishers('/third/start'), 20)
-                listener.next_statuses(30)
-                unknown = [each.message for each in listener.statuses + another.statuses
-                           if each.unknown_events and not each.settling]
-            self.assertEqual(unknown, [])
-            self.check_no_alarm(listener)
 
     @again_if_disturbed
     def test_what_a_node_of_this_package_says_before_it_is_known_counts_for_nothing(self) -> None:
@@ -217,53 +179,7 @@ class ChaosTest(TrainedCase):
             listener.await_heartbeats(3)
             self.check_alarm_names(listener, victim)
 
-    @again_if_disturbed
-    def test_a_node_with_a_name_that_is_too_long_is_left_out(self) -> None:
-        name = 'n' * 1000  # and a slash
-        with Talker('/a'), self.monitor(self.model(), subscribe='all') as monitor, \
-                MonitorListener() as listener, \
-                ours('storm', '__name:=' + name, '_rate:=50'):
-            listener.await_settled()
-            complaint = re.compile("'/nnn.* is too long; its messages are left out")
-            await_condition('it is named', lambda: complaint.search(monitor.output), 30)
-            listener.next_statuses(10)
-            self.assertEqual(len(complaint.findall(monitor.output)), 1)
-            self.check_no_alarm(listener)
-
-    # Nodes
-
-    @again_if_disturbed
-    def test_a_type_of_the_same_name_with_another_md5_sum(self) -> None:
-        with self.monitor(self.model()), MonitorListener() as listener:
-            with Talker('/a'):
-                listener.await_settled()
-            with Talker('/a', OtherString):
-                await_condition('its messages are heard, and are those of the model', lambda: (
-                    listener.diagnostics('communication')
-                    and '/a' not in listener.diagnostics('communication')[-1].message
-                    and all(s.events > 0 and s.level == SelfAwareness.OK and not s.unknown_events
-                            for s in listener.statuses[-15:])), 30)
-
-    # Messages
-
-    @again_if_disturbed
-    def test_messages_of_no_bytes_and_of_64_megabytes(self) -> None:
-        large = rospy.Publisher('/large', String, queue_size=1)
-        self.addCleanup(large.unregister)
-        with Talker('/a'), Talker('/empty', Empty), \
-                self.monitor(self.model(type_fields={'std_msgs/String': 'data'}, threshold=-1.0),
-                             subscribe='all'), MonitorListener() as listener:
-            listener.await_settled()
-            await_condition('the monitor listens', large.get_num_connections, 20)
-            pid = pid_of('/self_awareness')
-            before = resident_bytes(pid)
-            for _ in range(4):
-                large.publish('x' * 64 * MEGABYTE)
-            await_condition('all are heard', lambda: (
-                listener.value('monitor', 'publishers heard') == '5'), 40)
-            listener.next_statuses(10)
-            self.assertLess(resident_bytes(pid), before + 150 * MEGABYTE)
-            self.check_no_alarm(listener)
+    # Too much
 
     @again_if_disturbed
     def test_twenty_thousand_messages_a_second(self) -> None:
@@ -279,18 +195,6 @@ class ChaosTest(TrainedCase):
             self.assertTrue(monitor.running())
             self.assertLess(max(later - earlier for earlier, later in zip(
                 listener.heartbeats, listener.heartbeats[1:])), 3)
-
-    @again_if_disturbed
-    def test_a_queue_that_overflows_is_said_and_is_no_fault_of_others(self) -> None:
-        with driver() as victim, self.judging_monitor(queue_size=5), \
-                MonitorListener() as listener:
-            self.await_heard(listener)
-            with storm(rate=5000):
-                self.await_said(listener, 'monitor', OVERLOADED, DiagnosticStatus.WARN)
-                listener.next_statuses(20)
-                self.check_no_alarm(listener)
-                self.check_alarm_names(listener, victim, signal.SIGSTOP)
-            self.assertGreater(int(listener.value('monitor', 'dropped messages') or 0), 0)
 
     @again_if_disturbed
     def test_what_a_queue_loses_is_no_fault_of_who_sent_it(self) -> None:
@@ -371,7 +275,8 @@ class ChaosTest(TrainedCase):
                     listener, 'monitor', 'more than 1000 event types', DiagnosticStatus.WARN)
                 self.assertIn('not told apart', said.message)
                 before = resident_bytes(pid)
-                await_condition('many types', lambda: self.events(listener) > self.types,
+                await_condition('many types', lambda: sum(
+                    status.events for status in listener.statuses) > self.types,
                                 60 + self.types / 500)
                 self.assertLess(resident_bytes(pid), before + 8 * MEGABYTE)
             self.assertLess(int(listener.value(
@@ -379,9 +284,6 @@ class ChaosTest(TrainedCase):
             self.check_no_alarm(listener)
             monitor.stop()
             self.assertLess(len(monitor.output), 20000, 'the log is not filled')
-
-    def events(self, listener: MonitorListener) -> int:
-        return sum(status.events for status in listener.statuses)
 
     # The monitor itself
 
@@ -430,13 +332,15 @@ class ChaosTest(TrainedCase):
                 talking = ExitStack()
                 talking.enter_context(Talker('/a'))
                 seen = len(listener.statuses)
-                self.load()
+                self.assertTrue(rospy.ServiceProxy('/manager/load_nodelet', NodeletLoad)(
+                    '/watch', 'self_awareness/SelfAwareness', [], [], [], '').success)
                 await_condition('load {} is settled'.format(number), lambda: any(
                     not s.settling and s.events for s in listener.statuses[seen:]), 40)
                 if number % 2 == 0:
                     talking.close()
                     listener.await_alarm()
-                self.unload()
+                self.assertTrue(rospy.ServiceProxy('/manager/unload_nodelet', NodeletUnload)(
+                    '/watch').success)
                 talking.close()
                 await_condition('nothing is left', lambda: not self.left(), 20)
                 self.assertTrue(manager.running())
@@ -451,24 +355,11 @@ class ChaosTest(TrainedCase):
         except rospy.ServiceException:
             return None
 
-    def load(self) -> None:
-        self.assertTrue(rospy.ServiceProxy('/manager/load_nodelet', NodeletLoad)(
-            '/watch', 'self_awareness/SelfAwareness', [], [], [], '').success)
-
-    def unload(self) -> None:
-        self.assertTrue(rospy.ServiceProxy('/manager/unload_nodelet', NodeletUnload)(
-            '/watch').success)
-
     def left(self) -> Set[str]:
         """What the monitor has left at the master."""
-        state = rosgraph.Master(rospy.get_name()).getSystemState()
-        return set(self.names_of_manager(state))
-
-    def names_of_manager(self, state: list) -> Iterator[str]:
-        for kind in state:
-            for name, nodes in kind:
-                if '/manager' in nodes and (name.startswith('/watch') or name in ('/a',)):
-                    yield name
+        return {name for kind in rosgraph.Master(rospy.get_name()).getSystemState()
+                for name, nodes in kind
+                if '/manager' in nodes and (name.startswith('/watch') or name == '/a')}
 
 
 if __name__ == '__main__':

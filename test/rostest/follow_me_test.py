@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 import os
 import sys
 import threading
@@ -12,36 +11,29 @@ import unittest
 from collections import deque
 from functools import partial
 from statistics import median
-from typing import Callable, Deque, Dict, List, Optional, Tuple
+from typing import Callable, Deque, Dict, Optional, Tuple
 
 import rosgraph
 import rospy
 import rostest
 from std_msgs.msg import Header
 
-from live_system import pid_of
+from live_system import await_condition, pid_of
 from self_awareness.commands import induce
 from self_awareness_follow_me import induction
-from self_awareness_follow_me.effects import Starvation
 from self_awareness_follow_me.scenario import Scenario, load_scenario
 
 _RATE_HZ = 163.0
 _WINDOW_S = 5.0
-_POLL_S = 0.05
-# Topics whose header stamps are looked at: a host's clock can drift, and what passes the stamp of
-# its input on tells how long it took.
-_STAMPED = ('camera/image', 'legs')
+# Passes the stamp of its input on, which tells how long it took.
+_STAMPED = 'legs'
 # Generous: 15 processes start on a machine that may be busy with other things.
 _DEADLINE_S = 90.0
 
 
 def wait_for(condition: Callable[[], bool], what: str) -> None:
     """Wait until the condition holds; fail with `what` if that takes too long."""
-    deadline = time.monotonic() + _DEADLINE_S
-    while not condition():
-        if time.monotonic() > deadline:
-            raise AssertionError(f'still not after {_DEADLINE_S:g} s: {what}')
-        time.sleep(_POLL_S)
+    await_condition(what, condition, _DEADLINE_S)
 
 
 class Listener:
@@ -51,8 +43,7 @@ class Listener:
         self._lock = threading.Lock()
         self._recent: Deque[Tuple[float, str]] = deque()  # Guarded by _lock.
         self._last: Dict[str, float] = {}  # Guarded by _lock.
-        self._ages = {topic: deque([0.0], maxlen=11) for topic in _STAMPED}  # Guarded by _lock.
-        self._bytes: Dict[str, Deque[bytes]] = {}  # The newest messages. Guarded by _lock.
+        self._ages = deque([0.0], maxlen=11)  # Of _STAMPED. Guarded by _lock.
         self._begin = time.monotonic()
         self._subscribers = [rospy.Subscriber(prefix + topic, rospy.AnyMsg, self._heard, topic)
                              for topic in scenario.datatypes]
@@ -76,24 +67,18 @@ class Listener:
         with self._lock:
             return topic in self._last
 
-    def age(self, topic: str) -> float:
-        """Return what stamps on a topic of _STAMPED are behind their arrival (s): the median."""
+    def age(self) -> float:
+        """Return what stamps on _STAMPED are behind their arrival (s): the median."""
         with self._lock:
-            return median(self._ages[topic])
-
-    def newest(self, topic: str) -> List[bytes]:
-        """Return the newest messages on a topic, at most 5, the last one last."""
-        with self._lock:
-            return list(self._bytes.get(topic, []))
+            return median(self._ages)
 
     def _heard(self, message: rospy.AnyMsg, topic: str) -> None:
         now = time.monotonic()
         with self._lock:
-            if topic in _STAMPED:
+            if topic == _STAMPED:
                 # Every message with a header begins with it.
                 stamp = Header().deserialize(message._buff).stamp
-                self._ages[topic].append((rospy.Time.now() - stamp).to_sec())
-            self._bytes.setdefault(topic, deque(maxlen=5)).append(message._buff)
+                self._ages.append((rospy.Time.now() - stamp).to_sec())
             self._recent.append((now, topic))
             self._last[topic] = now
 
@@ -113,9 +98,6 @@ class FollowMeTest(unittest.TestCase):
     def _node(self, name: str) -> str:
         return f'/{self.namespace}/{name}'
 
-    def _headers(self, topic: str) -> List[Header]:
-        return [Header().deserialize(message) for message in self.listener.newest(topic)]
-
     def _registered(self) -> Tuple[str, ...]:
         publishers = rosgraph.Master(rospy.get_name()).getSystemState()[0]
         return tuple({node for _, nodes in publishers for node in nodes
@@ -134,29 +116,15 @@ class FollowMeTest(unittest.TestCase):
                       'speech/command', 'map_metadata'):
             wait_for(partial(self.listener.heard, topic), f'a message on {topic}')
 
-    def test_3_clock_drifts_and_is_set_right(self) -> None:
-        with induction.disturbed('ac', self.namespace):
-            wait_for(lambda: self.listener.age('camera/image') < -0.1, 'stamps ahead of the time')
-        wait_for(lambda: 0.0 < self.listener.age('camera/image') < 0.1,
-                 'stamps that are right again')
-
     def test_3_latency_grows_at_an_unchanged_rate(self) -> None:
-        wait_for(lambda: 0.0 < self.listener.age('legs') < 0.04, 'legs soon after the scan')
+        wait_for(lambda: 0.0 < self.listener.age() < 0.04, 'legs soon after the scan')
         with induction.disturbed('lat', self.namespace):
-            wait_for(lambda: 0.06 < self.listener.age('legs') < 0.1, 'legs 60 ms later')
+            wait_for(lambda: 0.06 < self.listener.age() < 0.1, 'legs 60 ms later')
             since = time.monotonic()
             wait_for(lambda: time.monotonic() - since > _WINDOW_S
                      and abs(self.listener.rate('legs') - 10.0) < 0.5, '10 Hz nevertheless')
-            self.assertGreater(self.listener.age('legs'), 0.06)
-        wait_for(lambda: self.listener.age('legs') < 0.04, 'legs soon after the scan again')
-
-    def test_3_lost_messages_are_counted(self) -> None:
-        def jump() -> bool:
-            numbers = [header.seq for header in self._headers('odom')]
-            return len(numbers) == 5 and numbers[-1] - numbers[0] > 4
-        self.assertFalse(jump())
-        with induction.disturbed('lossy:motors', self.namespace):
-            wait_for(jump, 'a gap in the numbers of odom')
+            self.assertGreater(self.listener.age(), 0.06)
+        wait_for(lambda: self.listener.age() < 0.04, 'legs soon after the scan again')
 
     def test_3_subscriber_leaves_and_comes_back(self) -> None:
         def listens() -> bool:
@@ -174,20 +142,10 @@ class FollowMeTest(unittest.TestCase):
         wait_for(lambda: self._node(intruder.spec.name) not in self._registered(), 'one leaves')
         wait_for(lambda: abs(self.listener.rate('cmd_vel') - 5.0) < 0.5, 'one who publishes')
 
-    def test_4_busy_workers_end(self) -> None:
-        starvation = Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
-        with induction.starved(starvation):
-            self.assertEqual(len(multiprocessing.active_children()), len(os.sched_getaffinity(0)))
-        self.assertEqual(multiprocessing.active_children(), [])
-
     def test_5_unknown_robot_is_an_error(self) -> None:
         self.assertEqual(induce.main(['cc1', '--namespace', 'nobody']), 1)
         for kind in ('ac', 'extra', 'silence'):
             self.assertEqual(induce.main([kind, '--namespace', 'nobody']), 1)
-
-    def test_5_unknown_fault_is_an_error(self) -> None:
-        for kind in ('cc9', 'crash', 'crash:plaer', 'silence:player'):
-            self.assertEqual(induce.main([kind, '--namespace', self.namespace]), 1)
 
     def test_6_killed_player_silences_slam(self) -> None:
         wait_for(lambda: self.listener.heard('pose'), 'a message on pose')

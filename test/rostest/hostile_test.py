@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """The monitor in a system of ROS 1 that is broken, or means ill."""
 
+import socket
 import subprocess
 
 import rosgraph
@@ -9,25 +10,12 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 from roscpp.srv import GetLoggers, SetLoggerLevel
 
-from fake_publisher import FakePublisher
 from live_system import MonitorListener, again_if_disturbed, await_condition
-from monitor_case import MonitorCase, Talker
+from monitor_case import MadeUpPublishers, MonitorCase, Talker
 from self_awareness.msg import SelfAwareness
 
 
 class HostileTest(MonitorCase):
-    def await_heard(self, listener: MonitorListener, timeout: float = 20) -> None:
-        """Waits for the next window that settled and has events."""
-        seen = len(listener.statuses)
-        await_condition('events are heard', lambda: any(
-            s.events > 0 and not s.settling for s in listener.statuses[seen:]), timeout)
-
-    def await_warning(self, listener: MonitorListener, part: str,
-                      timeout: float = 20) -> DiagnosticStatus:
-        seen = len(listener.diagnostics('monitor'))
-        return await_condition('a warning of ' + part, lambda: next(
-            (s for s in listener.diagnostics('monitor')[seen:]
-             if part in s.message and s.level == DiagnosticStatus.WARN), None), timeout)
 
     @again_if_disturbed
     def test_rosnode_kill_ends_it_in_order(self) -> None:
@@ -45,17 +33,21 @@ class HostileTest(MonitorCase):
 
     @again_if_disturbed
     def test_who_does_not_answer_is_not_heard_and_not_silent(self) -> None:
-        model = self.model(topics=('/a', '/b'), sources={'/b': '/fake'})
-        with Talker('/a'), FakePublisher('/b', b'', answers=False), \
+        model = self.model(topics=('/a', '/b'), sources={'/b': '/made_up_0'})
+        with Talker('/a'), socket.create_server(('127.0.0.1', 0)) as silent, \
+                MadeUpPublishers(['/b'], 'http://127.0.0.1:{}/'.format(silent.getsockname()[1])), \
                 self.monitor(model, alarm_windows=1), MonitorListener() as listener:
-            warning = self.await_warning(listener, '/fake on /b (does not answer)')
+            warning = await_condition('a warning', lambda: next(
+                (s for s in listener.diagnostics('monitor')
+                 if '/made_up_0 on /b (does not answer)' in s.message
+                 and s.level == DiagnosticStatus.WARN), None), 20)
             self.assertTrue(warning.message.startswith('not heard: '), warning.message)
             listener.await_settled()
             await_condition('the component is told', lambda: any(
                 'not heard by the monitor: does not answer' in s.message
-                for s in listener.diagnostics('/fake')), 20)
-            said = [s.message for s in listener.statuses]
-            self.assertEqual([each for each in said if '/fake' in each and 'silent' in each], [])
+                for s in listener.diagnostics('/made_up_0')), 20)
+            self.assertEqual([s.message for s in listener.statuses
+                              if '/made_up' in s.message and 'silent' in s.message], [])
 
     # Operators
 
@@ -94,7 +86,7 @@ class HostileTest(MonitorCase):
             for logger in ('ros.self_awareness', 'ros.roscpp', 'ros'):
                 rospy.ServiceProxy('/self_awareness/set_logger_level', SetLoggerLevel)(
                     logger, 'debug')
-            self.await_heard(listener)
+            self.assertTrue(any(s.events for s in listener.next_statuses(10)))
 
     def check_answered_sometimes(self, service: str) -> None:
         answers = [self.call('/self_awareness/' + service).success for _ in range(200)]

@@ -11,16 +11,12 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
-                         run_program, talker)
-from monitor_case import TrainedCase
+                         run_program)
+from monitor_case import TrainedCase, base, driver
 from self_awareness.msg import Incident, Incidents, SelfAwareness
-from self_awareness.srv import Maintenance, Mute, MuteResponse
+from self_awareness.srv import Mute, MuteResponse
 
 NODE = '/self_awareness'
-
-
-def driver() -> Process:
-    return talker('driver', '/scan', 12.5)
 
 
 class IncidentsTest(TrainedCase):
@@ -58,7 +54,7 @@ class IncidentsTest(TrainedCase):
 
     @again_if_disturbed
     def test_an_incident_is_opened_repeated_and_over_and_outlives_the_monitor(self) -> None:
-        with talker('base', '/odom', 10):
+        with base():
             with self.monitored() as monitor, MonitorListener() as listener:
                 await_condition('no incident yet', lambda: self.latest == [], 20)
                 with driver() as victim:
@@ -114,7 +110,7 @@ class IncidentsTest(TrainedCase):
 
     @again_if_disturbed
     def test_what_is_muted_is_judged_and_told_when_the_mute_ends(self) -> None:
-        with talker('base', '/odom', 10), self.monitored() as monitor, \
+        with base(), self.monitored() as monitor, \
                 MonitorListener() as listener, driver() as victim:
             listener.await_heard('/driver', '/base')
             said = self.mute(component='/driv*', duration=15.0)
@@ -134,30 +130,6 @@ class IncidentsTest(TrainedCase):
             self.await_level(listener, DiagnosticStatus.ERROR, 'stopped sending')
             self.assertIsNone(listener.value('monitor', 'mute 1'))
             await_condition('it is told', lambda: '[ERROR]' in monitor.output, 20)
-
-    @again_if_disturbed
-    def test_a_mute_ends_with_what_it_mutes_or_is_taken_back(self) -> None:
-        with talker('base', '/odom', 10), self.monitored() as monitor, \
-                MonitorListener() as listener:
-            with driver() as victim:
-                listener.await_heard('/driver', '/base')
-                self.assertTrue(self.mute(topic='/scan', duration=600.0, until_over=True).success)
-                victim.send(signal.SIGKILL)
-                listener.await_alarm()
-                self.await_level(listener, DiagnosticStatus.OK, 'muted (/scan until')
-            with driver() as victim:
-                await_condition('it is over', lambda: (
-                    'mute ended, since all is normal again: /scan; ' in monitor.output), 80)
-                listener.await_heard('/driver', '/base')
-                self.assertTrue(self.mute(component='*', duration=600.0).success)
-                victim.send(signal.SIGKILL)
-                listener.await_alarm()
-                self.await_level(listener, DiagnosticStatus.OK, 'muted (maintenance until')
-                maintenance = rospy.ServiceProxy(NODE + '/maintenance', Maintenance)
-                said = maintenance(duration=0.0)
-                self.assertTrue(said.success, said.message)
-                self.await_level(listener, DiagnosticStatus.ERROR, 'stopped sending')
-                self.assertFalse(maintenance(duration=0.0).success, 'there is none')
 
     @again_if_disturbed
     def test_a_mute_of_nothing_or_for_ever_is_refused(self) -> None:

@@ -6,6 +6,7 @@ import tempfile
 import threading
 import unittest
 from typing import Any, Dict, List, Optional, Sequence
+from xmlrpc.client import ServerProxy
 
 import rosgraph
 import rospy
@@ -13,7 +14,7 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger, TriggerResponse
 
 import self_awareness
-from live_system import Process, operation, ours, run_program, write_bag
+from live_system import Process, operation, ours, run_program, talker, write_bag
 from self_awareness.srv import Accept, AcceptResponse
 
 
@@ -46,6 +47,26 @@ class Talker:
         self._thread.join()
 
 
+class MadeUpPublishers:
+    """Topics and nodes that only the master knows: it takes any name, and any address."""
+
+    def __init__(self, names: List[str], uri: str = 'http://127.0.0.1:9') -> None:
+        self._names = names
+        self._uri = uri
+
+    def __enter__(self) -> 'MadeUpPublishers':
+        self._call('registerPublisher', 'std_msgs/String')
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._call('unregisterPublisher')
+
+    def _call(self, method: str, *arguments: str) -> None:
+        master = ServerProxy(rosgraph.get_master_uri())
+        for number, name in enumerate(self._names):
+            getattr(master, method)('/made_up_{}'.format(number), name, *arguments, self._uri)
+
+
 def publishers(topic: str) -> List[str]:
     return dict(rosgraph.Master(rospy.get_name()).getSystemState()[0]).get(topic, [])
 
@@ -65,35 +86,38 @@ def forget_parameters() -> None:
         rospy.delete_param('/self_awareness')
 
 
-class MonitorCase(unittest.TestCase):
-    """Needs rospy.init_node()."""
+class FolderCase(unittest.TestCase):
+    """With a folder of its own."""
 
     def setUp(self) -> None:
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
-        self.addCleanup(forget_parameters)
 
     def path(self, name: str) -> str:
         return os.path.join(self.folder, name)
 
+
+class MonitorCase(FolderCase):
+    """Needs rospy.init_node()."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.addCleanup(forget_parameters)
+
     def model(self, threshold: Optional[float] = 0.01, topics: Sequence[str] = ('/a',),
               type_fields: Optional[Dict[str, str]] = None, name: str = 'model',
-              window: int = 10**8, bonds: bool = False,
-              sources: Optional[Dict[str, str]] = None) -> str:
+              window: int = 10**8, sources: Optional[Dict[str, str]] = None) -> str:
         """A model of this process as it publishes on topics, std_msgs/String at 20 Hz.
 
         The bins are wide: on a busy machine, delays up to half a second are normal, too.
 
         Args:
-            bonds: of nodelets are events, too
             sources: who publishes a topic, where it is not this process
         """
         encoding = self_awareness.EncodingRules.defaults()
         encoding.type_fields = type_fields or {}
         # What rospy has to say of nodes that come and go is not what is tested.
         encoding.exclude_topics += ['/rosout']
-        if bonds:
-            encoding.exclude_topics = [x for x in encoding.exclude_topics if x != '.*/bond']
         learner = self_awareness.Learner(encoding=encoding, bin_size=500 * 10**6,
                                          window=window, paper=True)
         types = [self_awareness.EventType((sources or {}).get(topic, rospy.get_name()), topic,
@@ -124,6 +148,16 @@ class MonitorCase(unittest.TestCase):
     def call(self, service: str) -> TriggerResponse:
         rospy.wait_for_service(service, 20)
         return rospy.ServiceProxy(service, Trigger)()
+
+
+def driver(rate: float = 12.5) -> Process:
+    """The node of TrainedCase that dies."""
+    return talker('driver', '/scan', rate)
+
+
+def base() -> Process:
+    """The node of TrainedCase that goes on."""
+    return talker('base', '/odom', 10)
 
 
 class TrainedCase(MonitorCase):

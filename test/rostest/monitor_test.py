@@ -3,18 +3,15 @@
 
 import csv
 import os
-import shutil
 import signal
-import tempfile
-import unittest
 
-import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 from live_system import (MonitorListener, Process, Waiting, again_if_disturbed,
                          await_condition, pid_of, run_program)
+from monitor_case import FolderCase, publishers, subscribers
 from self_awareness import DEFAULT_WINDOW, Tuning
 from self_awareness.msg import SelfAwareness
 from self_awareness.stamps import SECOND_NS
@@ -23,25 +20,16 @@ TRAINING_S = 45
 CALIBRATION_S = 60
 
 
-def recording_odometry() -> bool:
-    subscribers = dict(rosgraph.Master('/monitor_test').getSystemState()[1])
-    return '/record' in subscribers.get('/odom', [])
-
-
-class MonitorTest(unittest.TestCase):
+class MonitorTest(FolderCase):
 
     def setUp(self) -> None:
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+        super().setUp()
         self.aggregated: dict = {}
         rospy.Subscriber('/diagnostics_agg', DiagnosticArray, self.on_aggregated)
 
     def on_aggregated(self, array: DiagnosticArray) -> None:
         for status in array.status:
             self.aggregated[status.name] = status
-
-    def path(self, name: str) -> str:
-        return os.path.join(self.folder, name)
 
     def record(self, name: str, seconds: int) -> str:
         with Process('rosbag', 'record', '-a', '-O', self.path(name),
@@ -72,7 +60,7 @@ class MonitorTest(unittest.TestCase):
 
         # The recorder comes first, so that the bag lacks nothing that the monitor heard.
         with Process('rosbag', 'record', '-a', '-O', self.path('live.bag'), '__name:=record'):
-            await_condition('the recorder records', recording_odometry, 30)
+            await_condition('the recorder records', lambda: '/record' in subscribers('/odom'), 30)
             with self.start_monitor(), MonitorListener() as listener:
                 self.assertNotEqual(listener.await_settled().level, SelfAwareness.ERROR)
                 waiting = Waiting()
@@ -116,9 +104,7 @@ class MonitorTest(unittest.TestCase):
         self.assertIn('overdue', alarm.evidence)
         self.assertTrue(alarm.abnormal)
         # For the master, the dead node is still alive.
-        self.assertIn('/scan', [topic for topic, nodes
-                                in rosgraph.Master('/monitor_test').getSystemState()[0]
-                                if '/player' in nodes])
+        self.assertIn('/player', publishers('/scan'))
 
     def check_diagnostics(self, listener: MonitorListener) -> None:
         status = await_condition('ERROR of the whole', lambda: next(

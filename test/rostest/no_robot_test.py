@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """Without a robot, learn.launch and the monitor say why they hear nothing; no such time counts."""
 
-import glob
 import re
 
 import rospy
@@ -14,8 +13,6 @@ from monitor_case import MonitorCase, Talker
 from self_awareness.msg import Components
 
 NO_ROBOT = 'nothing is heard: no node of a robot publishes anything; learning: 0.0 min of 3.0 min'
-PLAYS = re.compile(r'nothing is heard: /play_\d+ plays 3 topics; players are left out: use `score '
-                   r'BAG` or `train BAG`, or `source: none` in the encoding; learning: 0\.0 min')
 SILENT = 'nothing is heard: nothing is sent on /scan; learning: '
 
 
@@ -25,14 +22,12 @@ def minutes(status: DiagnosticStatus) -> float:
 
 class NoRobotTest(MonitorCase):
 
-    def bag(self) -> str:
-        return write_bag(self.path('robot.bag'), operation(
-            [('/lidar', '/a', 0.1), ('/slam', '/b', 0.1), ('/base', '/c', 0.1)], 60, 1))
-
     @again_if_disturbed
     def test_a_monitor_beside_a_player_names_it(self) -> None:
+        bag = write_bag(self.path('robot.bag'), operation(
+            [('/lidar', '/a', 0.1), ('/slam', '/b', 0.1), ('/base', '/c', 0.1)], 60, 1))
         with self.monitor(self.model(sources={'/a': '/lidar'})), MonitorListener() as listener, \
-                Process('rosbag', 'play', '--loop', '--quiet', self.bag()):
+                Process('rosbag', 'play', '--loop', '--quiet', bag):
             said = await_condition('the player is named', lambda: next(
                 (status for status in listener.diagnostics('communication')
                  if ' plays 3 topics; players are left out: use `score BAG`' in status.message),
@@ -48,8 +43,6 @@ class NoRobotTest(MonitorCase):
 
     @again_if_disturbed
     def test_what_is_not_heard_is_told_and_does_not_count(self) -> None:
-        bag = self.bag()
-
         def last() -> DiagnosticStatus:
             statuses = listener.diagnostics('communication')
             return statuses[-1] if statuses else DiagnosticStatus()
@@ -59,10 +52,6 @@ class NoRobotTest(MonitorCase):
                 'hours:=0.05', 'subscribe:=all') as process:
             await_condition('no robot', lambda: last().message.startswith(NO_ROBOT), 60)
             self.assertEqual(last().level, DiagnosticStatus.WARN)
-            with Process('rosbag', 'play', '--loop', '--quiet', bag):
-                await_condition('a player', lambda: PLAYS.match(last().message), 30)
-                self.assertEqual(last().level, DiagnosticStatus.WARN)
-                await_condition('a log', lambda: glob.glob(self.path('model.logs/*.active')), 30)
             with Talker('/scan') as talker:
                 await_condition('it counts', lambda: last().level == DiagnosticStatus.OK
                                 and minutes(last()) > 0.1, 60)
@@ -73,7 +62,7 @@ class NoRobotTest(MonitorCase):
                 await_condition('8 s more', lambda: len(
                     listener.diagnostics('communication')) > seen + 8, 30)
                 self.assertEqual(minutes(last()), counted)
-            for why in (NO_ROBOT, '/play_', SILENT):
+            for why in (NO_ROBOT, SILENT):
                 said = 'does not count: ' + why.replace('nothing is heard: ', '').split(';')[0]
                 self.assertGreaterEqual(process.output.count(said), 1, said)
             self.assertLess(process.output.count('nothing is heard'), 8, process.output)

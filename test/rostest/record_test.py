@@ -3,9 +3,6 @@
 
 import glob
 import os
-import shutil
-import tempfile
-import unittest
 from typing import Callable, List, Set
 
 import rosbag
@@ -15,10 +12,9 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
-from std_srvs.srv import Trigger
 
 from live_system import Process, await_condition, ours
-from monitor_case import Talker, subscribers
+from monitor_case import FolderCase, Talker, subscribers
 from self_awareness import (EncodingRules, read_events, recordings_in_event_log,
                             summarise_bag)
 from self_awareness.training.robot_graph import RobotGraph, graph_file
@@ -30,11 +26,7 @@ def own_host() -> str:
     return uri.split('//')[1].split(':')[0]
 
 
-class RecordTest(unittest.TestCase):
-
-    def setUp(self) -> None:
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
+class RecordTest(FolderCase):
 
     def launch(self, *arguments: str) -> Process:
         return Process('roslaunch', 'self_awareness', 'record.launch',
@@ -125,16 +117,6 @@ class RecordTest(unittest.TestCase):
         self.assertEqual(len(set(starts)), 1)
         later, = set(again) - set(files)
         self.assertNotEqual(summarise_bag(later, 0).robot_start, starts[0])
-
-    def test_the_file_ends_when_it_is_asked_to(self) -> None:
-        with Talker('/a'), self.launch() as recorder:
-            await_condition('a log', self.active, 30)
-            rospy.wait_for_service('/recorder/finish', 30)
-            self.assertTrue(rospy.ServiceProxy('/recorder/finish', Trigger)().success)
-            self.assertEqual(self.active(), set())
-            recorder.wait(30)
-        log, = glob.glob(self.folder + '/run*.bag')
-        self.assertEqual(recordings_in_event_log(log), 1)
 
     def test_a_missing_folder_is_told_once_and_recording_begins_when_it_is_there(self) -> None:
         said, folder = [], self.folder + '/new'

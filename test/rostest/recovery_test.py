@@ -127,19 +127,9 @@ class RecoveryTest(MonitorCase):
                 listener.close()
 
     @contextmanager
-    def launched(self, *nodes: str) -> Iterator[None]:
-        """Other nodes, which say nothing; each by its name and attributes."""
-        with open(self.path('others.launch'), 'w') as file:
-            file.write('<launch>{}</launch>'.format(''.join(
-                '<node pkg="topic_tools" type="relay" args="/none /nothing" name={}/>'.format(each)
-                for each in nodes)))
-        with Process('roslaunch', '--wait', file.name):
-            yield
-
-    @contextmanager
-    def hung(self, node: str = PLAYER) -> Iterator[int]:
-        """The process of a node, stopped; it goes on if it is still there at the end."""
-        pid = pid_of(node)
+    def hung(self) -> Iterator[int]:
+        """The process of /player, stopped; it goes on if it is still there at the end."""
+        pid = pid_of(PLAYER)
         os.kill(pid, signal.SIGSTOP)
         try:
             yield pid
@@ -184,38 +174,16 @@ class RecoveryTest(MonitorCase):
                               if each['id'] == alarm.alarm], [['stop /player']])
 
     @again_if_disturbed
-    def test_who_fails_while_the_alarm_of_another_one_stays_is_mended_too(self) -> None:
-        with self.recovering(self.rules(STOP)) as recovery, self.hung('/camera') as camera:
-            alarm = self.said.await_alarm()
-            self.assertEqual(alarm.component, '/camera')
-            with self.hung():
-                action: RecoveryAction = await_condition('an action is over', lambda: next(
-                    (each for each in recovery.actions if each.over), None), 60)
-            self.assertEqual((action.incident, action.component, action.kind, action.result),
-                             (alarm.alarm, PLAYER, 'silent',
-                              '/player ended by SIGKILL, since it hangs'))
-            self.assertEqual(state_of(camera), 'T', 'there is no rule for it')
-
-    @again_if_disturbed
-    def test_nothing_is_done_while_it_is_held_also_by_another_start_of_it(self) -> None:
-        """Then step after step."""
+    def test_nothing_is_done_while_it_is_held_then_step_after_step(self) -> None:
         service = rospy.Service('/does_not_help', Trigger,
                                 lambda _: TriggerResponse(True, 'no change'))
         self.addCleanup(service.shutdown)
         rules = self.rules({'call': '/does_not_help'}, STOP, wait=1.0)
-        with self.recovering(rules):
+        with self.recovering(rules) as recovery:
             self.assertIn('from 1 to 86400 s', self.hold(1e9).message)
             self.assertIn('does nothing until', self.hold(600.0).message)
-            await_condition('it is kept', lambda: os.path.exists(
-                self.path('recorder/self_awareness.actions')), 20)
-        with self.monitor(self.trained, detector='evidence', settle_time=3), \
-                MonitorListener() as monitor, self.recovery(rules):
-            recovery = RecoveryListener()
-            self.addCleanup(recovery.close)
-            monitor.await_settled()
-            recovery.await_status(DiagnosticStatus.WARN, 'does nothing until')
             with self.hung() as pid:
-                monitor.await_alarm()
+                self.said.await_alarm()
                 recovery.await_status(DiagnosticStatus.WARN, 'does nothing until')
                 self.assertEqual((recovery.actions, state_of(pid)), ([], 'T'))
                 self.assertEqual(self.hold(0.0).message, 'goes on')
@@ -224,19 +192,6 @@ class RecoveryTest(MonitorCase):
                 self.assertEqual([each.result for each in recovery.actions],
                                  ['/does_not_help says: no change',
                                   '/player ended by SIGKILL, since it hangs'])
-
-    def test_who_cannot_be_stopped_is_told_before_it_is_needed(self) -> None:
-        stop = {'stop': ['/lasting', '/required', '/misspelt', PLAYER]}
-        with self.launched('"lasting"', '"required" required="true"'), \
-                self.recovering(self.rules(stop)) as recovery:
-            def told() -> List[str]:
-                return [each.value for each in recovery.statuses[-1].values
-                        if each.key.startswith('cannot stop')]
-
-            await_condition('all three are told', lambda: len(told()) == 3 and all(
-                words in ''.join(told()) for words in (
-                    '/lasting is not respawn="true"', '/required is required="true"',
-                    '/misspelt: not heard so far')), 40)
 
 
 def state_of(pid: int) -> str:

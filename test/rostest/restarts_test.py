@@ -9,17 +9,11 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 from rosgraph_msgs.msg import Log
 
-from live_system import (MonitorListener, again_if_disturbed, await_condition,
-                         run_program, talker)
-from monitor_case import TrainedCase
+from live_system import MonitorListener, again_if_disturbed, await_condition
+from monitor_case import TrainedCase, base, driver
 from self_awareness.msg import Incident, Incidents
-from self_awareness.srv import Mute
 
 NODE = '/self_awareness'
-
-
-def driver(rate: float = 12.5):
-    return talker('driver', '/scan', rate)
 
 
 class RestartsTest(TrainedCase):
@@ -38,7 +32,7 @@ class RestartsTest(TrainedCase):
     @again_if_disturbed
     def test_who_is_optional_may_be_absent_and_is_judged_while_there(self) -> None:
         rospy.set_param(NODE + '/optional', ['/driv*'])
-        with talker('base', '/odom', 10), self.trained_monitor(), MonitorListener() as listener:
+        with base(), self.trained_monitor(), MonitorListener() as listener:
             listener.await_heard('/base')
             await_condition('it is absent', lambda: any(
                 status.message == 'optional (absent)'
@@ -59,7 +53,7 @@ class RestartsTest(TrainedCase):
 
     @again_if_disturbed
     def test_a_node_that_is_started_again_is_followed(self) -> None:
-        with talker('base', '/odom', 10), self.trained_monitor(), MonitorListener() as listener:
+        with base(), self.trained_monitor(), MonitorListener() as listener:
             for times in range(1, 5):
                 with driver():
                     listener.await_heard('/driver', '/base')
@@ -77,39 +71,6 @@ class RestartsTest(TrainedCase):
             with driver():
                 await_condition('normal', lambda: listener.diagnostics('communication')[
                     -1].level == DiagnosticStatus.OK, 40)
-
-    @again_if_disturbed
-    def test_of_a_fleet_it_is_followed_by_the_names_of_the_model_and_can_be_muted(self) -> None:
-        run_program('train', *self.bags, '-o', self.path('model'),
-                    '--rename', '/r[0-9]+/(.*)', '/\\1')
-        namespace = '__ns:=/r7'
-        with talker('base', '/r7/odom', 10, namespace), self.trained_monitor(), \
-                MonitorListener() as listener:
-            rospy.wait_for_service(NODE + '/mute', 20)
-            mute = rospy.ServiceProxy(NODE + '/mute', Mute)
-            self.assertTrue(mute(component='/driver', duration=600).success)
-            for times in range(4):
-                with talker('driver', '/r7/scan', 12.5, namespace):
-                    listener.await_heard('/driver', '/base')
-                    if times > 0:
-                        await_condition('it is told how often', lambda: (
-                            listener.value('/driver', 'restarts') or '').startswith(
-                                'restarted {} time'.format(times)), 20)
-                        await_condition('it is back', lambda: sum(
-                            '/driver restarted at' in line for line in self.logged) == times, 60)
-                await_condition('it is gone', lambda: listener.statuses[-1].abnormal, 40)
-            status = listener.diagnostics('/driver')[-1]
-            self.assertEqual(status.level, DiagnosticStatus.OK, status.message)
-            self.assertTrue(any(
-                re.fullmatch(r'muted \(.*\): /driver restarted 3 times in 10 min', line)
-                for line in self.logged))
-            self.assertNotIn('/driver restarted 3 times in 10 min', self.logged)
-            self.assertFalse([each for each in self.incidents if 'restarted' in each.reason])
-            with talker('driver', '/r7/scan', 12.5, namespace):
-                await_condition('normal', lambda: not listener.statuses[-1].abnormal, 40)
-                self.assertTrue(mute(component='/driver', duration=0).success)
-                await_condition('it is told', lambda: (
-                    listener.diagnostics('/driver')[-1].level == DiagnosticStatus.WARN), 40)
 
 
 if __name__ == '__main__':

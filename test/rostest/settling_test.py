@@ -12,7 +12,7 @@ from std_msgs.msg import String
 
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          talker)
-from monitor_case import Talker, TrainedCase
+from monitor_case import Talker, TrainedCase, base, driver
 from self_awareness.msg import SelfAwareness
 
 
@@ -61,8 +61,7 @@ class SettlingTest(TrainedCase):
 
     @again_if_disturbed
     def test_what_does_not_come_after_the_start_is_said(self) -> None:
-        with talker('driver', '/scan', 12.5), talker('base', '/odom', 10), \
-                self.trained_monitor(subscribe='used'), \
+        with driver(), base(), self.trained_monitor(subscribe='used'), \
                 MonitorListener() as listener:
             listener.await_settled()
             await_condition('it is missing', lambda: any(
@@ -115,22 +114,6 @@ class SettlingTest(TrainedCase):
             # As after a restart of the master, which forgets its parameters.
             rospy.delete_param('/self_awareness/model')
             self.assertIn(second, self.call('/self_awareness/reload').message)
-
-    @again_if_disturbed
-    def test_after_reload_the_next_message_of_a_latching_connection_is_an_event(self) -> None:
-        latching = rospy.Publisher('/latched', String, latch=True, queue_size=1)
-        self.addCleanup(latching.unregister)
-        latching.publish('published long ago')
-        with Talker('/a'), self.monitor(self.model(), subscribe='all'), \
-                MonitorListener() as listener:
-            listener.await_settled()
-            await_condition('both are heard', lambda: (
-                listener.value('monitor', 'publishers heard') == '2'), 20)
-            self.assertTrue(self.call('/self_awareness/reload').success)
-            listener.await_settled()
-            latching.publish('published now')
-            await_condition('it is an event', lambda: any(
-                s.unknown_events for s in listener.statuses), 20)
 
     @again_if_disturbed
     def test_after_reload_windows_are_judged_in_the_pace_of_the_new_model(self) -> None:

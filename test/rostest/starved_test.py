@@ -10,8 +10,8 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import (PRESSURE, MonitorListener, Process, Waiting, again_if_disturbed,
-                         await_condition, run_program, talker)
-from monitor_case import TrainedCase
+                         await_condition, run_program)
+from monitor_case import TrainedCase, base, driver
 from self_awareness.msg import SelfAwareness
 
 LOOP = 'while True: pass'
@@ -28,8 +28,7 @@ class StarvedTest(TrainedCase):
 
     @again_if_disturbed
     def test_busy_loops_are_the_machines_fault(self) -> None:
-        with talker('driver', '/scan', 12.5), talker('base', '/odom', 10), \
-                self.monitor(self.path('model'), detector='evidence'), \
+        with driver(), base(), self.monitor(self.path('model'), detector='evidence'), \
                 MonitorListener() as listener:
             waiting = Waiting()
             listener.await_heard('/driver', '/base')

@@ -8,7 +8,7 @@
 
 namespace self_awareness::core::evidence {
 
-/// A channel that is no part of the method: it shows what one needs (docs/architecture.md). An
+/// A channel that is no part of the method: it shows what one needs (docs/developers.md). An
 /// event type that comes in bursts. Evidence is the number of its events in one window.
 class Bursts : public Channel {
  public:

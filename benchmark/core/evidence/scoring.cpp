@@ -6,7 +6,6 @@
 #include <map>
 #include <memory>
 
-#include "allocated_bytes.h"
 #include "core/evidence/channel/scorer.h"
 #include "event_loop.h"
 #include "self_awareness/core/evidence/channel/model.h"
@@ -23,16 +22,9 @@ using core::kNanosecondsPerSecond;
 constexpr std::int64_t kTrainingOfHalf = 50 * kNanosecondsPerSecond;
 constexpr std::int64_t kWindow = kNanosecondsPerSecond / 10;
 
-evidence::Statistics emptyStatistics(std::size_t types) {
-  evidence::Statistics statistics;
-  for (core::EventId id = 0; id < types; ++id) {
-    statistics.intern(SyntheticSystem::type(id));
-  }
-  return statistics;
-}
-
 std::array<evidence::Statistics, 2> trainedHalves(std::size_t types) {
-  std::array<evidence::Statistics, 2> halves = {emptyStatistics(types), emptyStatistics(types)};
+  std::array<evidence::Statistics, 2> halves = {emptyStatistics<evidence::Statistics>(types),
+                                                emptyStatistics<evidence::Statistics>(types)};
   SyntheticSystem system(types);
   for (evidence::Statistics& half : halves) {
     evidence::Trainer trainer(half, kWindow);
@@ -42,7 +34,6 @@ std::array<evidence::Statistics, 2> trainedHalves(std::size_t types) {
 }
 
 struct Trained {
-  evidence::Watched watched;
   std::shared_ptr<const evidence::Model> model;
   std::size_t bytes = 0;  // of the model and of a scorer
 };
@@ -53,9 +44,9 @@ const Trained& trained(std::size_t types) {
   Trained& entry = all[types];
   if (!entry.model) {
     const std::array<evidence::Statistics, 2> halves = trainedHalves(types);
-    entry.watched = evidence::watch(halves[0], halves[1]);
+    const evidence::Watched watched = evidence::watch(halves[0], halves[1]);
     const std::size_t before = allocatedBytes();
-    entry.model = std::make_shared<const evidence::Model>(entry.watched);
+    entry.model = std::make_shared<const evidence::Model>(watched);
     const evidence::Scorer scorer(entry.model, kWindow);
     entry.bytes = allocatedBytes() - before;
   }
@@ -73,14 +64,14 @@ void scoreEvidence(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(scorer.add(events.next()));
   }
+  state.counters["bytes"] = static_cast<double>(entry.bytes);
 }
 BENCHMARK(scoreEvidence)->ArgsProduct({kSizes});
 
 void closeWindowEvidence(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));
-  const Trained& entry = trained(types);
   EventLoop events = loopOfEvents(types);
-  evidence::Scorer scorer(entry.model, kWindow);
+  evidence::Scorer scorer(trained(types).model, kWindow);
   core::Event last;
   for (std::size_t i = 0; i < events.size(); ++i) {
     last = events.next();
@@ -89,23 +80,18 @@ void closeWindowEvidence(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(scorer.closeWindow(last.stamp + 1));
   }
-  state.counters["tracks"] = static_cast<double>(entry.model->tracks().size());
 }
 BENCHMARK(closeWindowEvidence)->ArgsProduct({kSizes});
 
 void trainEvidence(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));
-  const std::size_t before = allocatedBytes();
   for (auto _ : state) {
-    evidence::Statistics statistics = emptyStatistics(types);
+    auto statistics = emptyStatistics<evidence::Statistics>(types);
     evidence::Trainer trainer(statistics, kWindow);
     SyntheticSystem system(types);
-    const TrainingRun first = trainFor(2 * kTrainingOfHalf, system, trainer);
-    state.SetIterationTime(first.seconds);
-    state.counters["events"] = static_cast<double>(first.events);
-    state.counters["bytes"] = static_cast<double>(allocatedBytes() - before);
-    trainFor(2 * kTrainingOfHalf, system, trainer);
-    state.counters["bytes_of_twice"] = static_cast<double>(allocatedBytes() - before);
+    const TrainingRun run = trainFor(2 * kTrainingOfHalf, system, trainer);
+    state.SetIterationTime(run.seconds);
+    state.counters["events"] = static_cast<double>(run.events);
   }
 }
 BENCHMARK(trainEvidence)
@@ -114,25 +100,6 @@ BENCHMARK(trainEvidence)
     ->UseManualTime()
     ->MinTime(0.2)
     ->Unit(benchmark::kMillisecond);
-
-void chooseEvidence(benchmark::State& state) {
-  const std::array<evidence::Statistics, 2> halves =
-      trainedHalves(static_cast<std::size_t>(state.range(0)));
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(evidence::watch(halves[0], halves[1]));
-  }
-}
-BENCHMARK(chooseEvidence)->ArgsProduct({kSizes})->Repetitions(1)->Unit(benchmark::kMillisecond);
-
-void loadEvidence(benchmark::State& state) {
-  const Trained& entry = trained(static_cast<std::size_t>(state.range(0)));
-  for (auto _ : state) {
-    evidence::Model model(entry.watched);
-    benchmark::DoNotOptimize(model);
-  }
-  state.counters["bytes"] = static_cast<double>(entry.bytes);
-}
-BENCHMARK(loadEvidence)->ArgsProduct({kSizes})->Repetitions(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace self_awareness::benchmarks

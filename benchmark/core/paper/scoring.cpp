@@ -8,7 +8,6 @@
 #include <memory>
 #include <vector>
 
-#include "allocated_bytes.h"
 #include "core/paper/delay_trainer.h"
 #include "core/paper/scorer.h"
 #include "event_loop.h"
@@ -25,16 +24,7 @@ using core::kNanosecondsPerSecond;
 constexpr std::int64_t kTraining = 100 * kNanosecondsPerSecond;
 const paper::Binning kBinning{10000000, 0};
 
-paper::DelayStatistics emptyStatistics(std::size_t types) {
-  paper::DelayStatistics statistics(kBinning);
-  for (core::EventId id = 0; id < types; ++id) {
-    statistics.intern(SyntheticSystem::type(id));
-  }
-  return statistics;
-}
-
 struct Trained {
-  paper::DelayStatistics statistics;
   std::shared_ptr<const paper::Model> model;
   std::size_t bytes = 0;  // of the model
 };
@@ -42,14 +32,14 @@ struct Trained {
 // Google Benchmark calls a function several times; the models are trained only once.
 const Trained& trained(std::size_t types) {
   static std::map<std::size_t, Trained> all;
-  const auto [place, is_new] = all.try_emplace(types, Trained{emptyStatistics(types), nullptr, 0});
-  Trained& entry = place->second;
-  if (is_new) {
-    paper::DelayTrainer trainer(entry.statistics);
+  Trained& entry = all[types];
+  if (!entry.model) {
+    auto statistics = emptyStatistics<paper::DelayStatistics>(types, kBinning);
+    paper::DelayTrainer trainer(statistics);
     SyntheticSystem system(types);
     trainFor(kTraining, system, trainer);
     const std::size_t before = allocatedBytes();
-    entry.model = std::make_shared<const paper::Model>(entry.statistics);
+    entry.model = std::make_shared<const paper::Model>(statistics);
     entry.bytes = allocatedBytes() - before;
   }
   return entry;
@@ -70,6 +60,7 @@ void scorePaper(benchmark::State& state) {
   const auto& seen = scorer.lastSeen();
   state.counters["terms"] = static_cast<double>(std::count_if(
       seen.begin(), seen.end(), [](const auto& stamp) { return stamp.has_value(); }));
+  state.counters["bytes"] = static_cast<double>(trained(types).bytes);
 }
 BENCHMARK(scorePaper)->ArgsProduct({kSizes});
 
@@ -109,25 +100,13 @@ BENCHMARK(lookUpPaper)->ArgsProduct({kSizes});
 
 void trainPaper(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));
-  const std::size_t before = allocatedBytes();
   for (auto _ : state) {
-    paper::DelayStatistics statistics = emptyStatistics(types);
+    auto statistics = emptyStatistics<paper::DelayStatistics>(types, kBinning);
     paper::DelayTrainer trainer(statistics);
     SyntheticSystem system(types);
-    const TrainingRun first = trainFor(kTraining, system, trainer);
-    state.SetIterationTime(first.seconds);
-    state.counters["events"] = static_cast<double>(first.events);
-    state.counters["bytes"] = static_cast<double>(allocatedBytes() - before);
-    trainFor(kTraining, system, trainer);
-    state.counters["bytes_of_twice"] = static_cast<double>(allocatedBytes() - before);
-    std::size_t bins = 0;
-    for (core::EventId to = 0; to < types; ++to) {
-      for (core::EventId from = 0; from < types; ++from) {
-        bins += statistics.pair(from, to).entries().size();
-      }
-    }
-    state.counters["bins_per_pair"] =
-        static_cast<double>(bins) / static_cast<double>(types * types);
+    const TrainingRun run = trainFor(kTraining, system, trainer);
+    state.SetIterationTime(run.seconds);
+    state.counters["events"] = static_cast<double>(run.events);
   }
 }
 BENCHMARK(trainPaper)
@@ -136,16 +115,6 @@ BENCHMARK(trainPaper)
     ->UseManualTime()
     ->MinTime(0.2)
     ->Unit(benchmark::kMillisecond);
-
-void loadPaper(benchmark::State& state) {
-  const Trained& entry = trained(static_cast<std::size_t>(state.range(0)));
-  for (auto _ : state) {
-    paper::Model model(entry.statistics);
-    benchmark::DoNotOptimize(model);
-  }
-  state.counters["bytes"] = static_cast<double>(entry.bytes);
-}
-BENCHMARK(loadPaper)->ArgsProduct({kSizes})->Repetitions(1)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace self_awareness::benchmarks

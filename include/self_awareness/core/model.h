@@ -87,7 +87,7 @@ struct Model {
   /// of the robot subscribed to it.
   std::set<SourceGraph::Publication> unheard() const;
   /// What components subscribed to in every recording of the training, from when the start had had
-  /// its time to the end (docs/connections.md). Empty: that is not known of all recordings, or
+  /// its time to the end (docs/robots.md). Empty: that is not known of all recordings, or
   /// they are of one start.
   std::set<SourceGraph::Subscription> expectedSubscriptions() const;
   /// Forgets all counts but those that the evidence detector judges by.

@@ -283,8 +283,6 @@ class Family:
             to learn from is of another one, and all that is watched of one more; None: there is
             one robot.
         names_robots: the recordings to learn from say of which robot they are.
-        breaks_in: faults come while the robot is in all of its activities (True), or in none of
-            them (False), and stays so; None: while it changes.
     """
 
     told: str
@@ -294,7 +292,6 @@ class Family:
     flaw: Callable[[Robot, int, float], Optional[Fault]] = lambda *_: None
     of_make: Optional[Callable[[int, int], Robot]] = None
     names_robots: bool = False
-    breaks_in: Optional[bool] = None
 
 
 _STALLS = Conditions(stalls_an_hour=6.0)
@@ -355,23 +352,6 @@ FAMILIES['fleet'] = Family(
     names_robots=True)
 FAMILIES['fleet_own'] = Family('the robot of `fleet` that is watched, learned from itself',
                                _of_fleet)
-
-MODES: Dict[str, bool] = {'active': True, 'idle': False}
-"""By name, whether a robot is in its activities."""
-
-
-def _in_mode(name: str, mode: str, alone: bool) -> Family:
-    family, is_active = FAMILIES[name], MODES[mode]
-    if alone:
-        return replace(family, told=f'`{name}`, always {mode}',
-                       draw=lambda seed: family.draw(seed).in_mode(is_active))
-    return replace(family, told=f'`{name}`, broken while it is {mode}', breaks_in=is_active)
-
-
-FAMILIES.update({
-    f'{name}_{mode}{"_alone" if alone else ""}': _in_mode(name, mode, alone)
-    for name in ('driving_docked', 'long_pauses', 'events_only', 'dialogue') for mode in MODES
-    for alone in (False, True)})
 
 
 def draw(family: str, seed: int) -> Robot:

@@ -1,4 +1,4 @@
-"""What the messages of a simulated robot are besides their time: honest ones (docs/attributes.md).
+"""What the messages of a simulated robot are besides their time: honest (docs/method.md, 3.10).
 
 Stamps are a little older than the messages, numbers count them, and sizes and contents are those
 of their types: some have one size, some vary, and some say the same again and again.

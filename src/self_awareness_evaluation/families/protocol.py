@@ -96,14 +96,12 @@ class Records:
 
     def __init__(self, family: str, seed: int) -> None:
         self._family = FAMILIES[family]
-        self._learned = self._family.draw(seed)
-        mode = self._family.breaks_in
-        self.robot: Robot = self._learned if mode is None else self._learned.in_mode(mode)
+        self.robot: Robot = self._family.draw(seed)
 
     def training(self, learning: Learning) -> List[WindowedEvents]:
         """Return the recordings to train on."""
         return [self._recorded(_TRAINING, number, learning.training_s, self._family.one_start,
-                               self._family.flaw(self._learned, number, learning.training_s))
+                               self._family.flaw(self.robot, number, learning.training_s))
                 for number in range(learning.starts)]
 
     def calibration(self, learning: Learning) -> List[WindowedEvents]:
@@ -211,8 +209,8 @@ class Records:
         of those that are learned from."""
         of_make = self._family.of_make
         if of_make is None:
-            return self.robot if section == _FAULTS else self._learned
-        return of_make(self._learned.seed, _WATCHED.first if section in (_WATCHED, _FAULTS)
+            return self.robot
+        return of_make(self.robot.seed, _WATCHED.first if section in (_WATCHED, _FAULTS)
                        else section.first + number)
 
 

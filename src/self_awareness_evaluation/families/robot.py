@@ -44,7 +44,6 @@ LONGEST_START_S = 90_000.0
 
 _FIRST_START_S = 1_600_000_000
 _BETWEEN_STARTS_S = 100_000
-_FOR_EVER_S = 1e12  # mean time that a mode lasts
 _SHORT_PAUSE_S = 3.0  # who pauses for less on average is still regular
 _RECORDER = ''
 
@@ -157,23 +156,22 @@ class Robot:
     def strangers_of(self, source: str, most: int) -> Tuple[str, ...]:
         """Return regular components that need neither a component nor each other, and which they
         do not need."""
-        graph = self.graph
         chosen = [source]
         for other in self.regular:
-            reached = _reached_by(other, graph)
+            reached = self.reached_by(other)
             if len(chosen) <= most and not any(
-                    each in reached or other in _reached_by(each, graph) for each in chosen):
+                    each in reached or other in self.reached_by(each) for each in chosen):
                 chosen.append(other)
         return tuple(chosen[1:])
 
     def reached_by(self, source: str) -> Set[str]:
         """Return a component, and those that its messages reach, whoever passes them on."""
-        return _reached_by(source, self.graph)
-
-    def in_mode(self, on: bool) -> Robot:
-        """Return the robot in all of its activities, for ever, or in none of them."""
-        mode = Activity(_FOR_EVER_S, 0.0) if on else Activity(0.0, _FOR_EVER_S)
-        return replace(self, activities=dict.fromkeys(self.activities, mode))
+        graph, reached = self.graph, {source}
+        while True:
+            further = {edge[2] for edge in graph if edge[0] in reached} - reached
+            if not further:
+                return reached
+            reached |= further
 
     def start(self, start_seed: int, seconds: float, fault: Optional[Fault] = None,
               begin_s: float = 0.0) -> WindowedEvents:
@@ -299,16 +297,6 @@ class Robot:
             stamps[order], np.repeat(ids, [len(times) for times in inside])[order],
             origin + nanoseconds(end), attributes=np.concatenate(
                 [each[those] for each, those in zip(attributes, kept)])[order])
-
-
-def _reached_by(source: str, graph: Set[Tuple[str, str, str]]) -> Set[str]:
-    """Return a component, and those that its messages reach, whoever passes them on."""
-    reached = {source}
-    while True:
-        further = {edge[2] for edge in graph if edge[0] in reached} - reached
-        if not further:
-            return reached
-        reached |= further
 
 
 def _missed(times: np.ndarray, scene: Scene, fault: Fault) -> np.ndarray:

@@ -15,7 +15,6 @@ from self_awareness_follow_me.effects import Starvation
 _BURST_S = (0.2, 1.5)  # at least and at most
 _BETWEEN_BURSTS_S = 20.0  # on the average
 _BUSY = Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)
-_BURSTS_SEED = 1
 
 
 @contextlib.contextmanager
@@ -42,25 +41,20 @@ def starved() -> Iterator[float]:
         yield time.time()
 
 
-class Bursts:
-    """Busy processes on all cores for a moment now and then; each run goes on where one ended."""
+@contextlib.contextmanager
+def bursts(chance: random.Random) -> Iterator[float]:
+    """Let busy processes on all cores take the machine for a moment now and then."""
+    over = threading.Event()
 
-    def __init__(self) -> None:
-        self._random = random.Random(_BURSTS_SEED)
-
-    @contextlib.contextmanager
-    def run(self) -> Iterator[float]:
-        """Take the machine now and then while the with statement lasts."""
-        over = threading.Event()
-        thread = threading.Thread(target=self._take, args=(over,))
-        thread.start()
-        try:
-            yield time.time()
-        finally:
-            over.set()
-            thread.join()
-
-    def _take(self, over: threading.Event) -> None:
-        while not over.wait(self._random.expovariate(1.0 / _BETWEEN_BURSTS_S)):
+    def take() -> None:
+        while not over.wait(chance.expovariate(1.0 / _BETWEEN_BURSTS_S)):
             with induction.starved(_BUSY):
-                over.wait(self._random.uniform(*_BURST_S))
+                over.wait(chance.uniform(*_BURST_S))
+
+    thread = threading.Thread(target=take)
+    thread.start()
+    try:
+        yield time.time()
+    finally:
+        over.set()
+        thread.join()

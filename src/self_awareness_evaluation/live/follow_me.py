@@ -7,9 +7,10 @@ import time
 from typing import ContextManager, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 from self_awareness_evaluation.live.breaking import stopped
-from self_awareness_evaluation.live.listeners import STARTED_WITHIN_S, TopicListener, heard
-from self_awareness_evaluation.live.processes import WARM_UP_S, Processes, await_condition, wait
-from self_awareness_evaluation.simulated.records import default_faults
+from self_awareness_evaluation.live.listeners import TopicListener, heard
+from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, WARM_UP_S, Processes,
+                                                      await_condition, wait)
+from self_awareness_evaluation.simulated import default_faults
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Crash, Effect, Intruder, Silence
 from self_awareness_follow_me.faults import effect_of

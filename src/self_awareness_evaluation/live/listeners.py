@@ -10,17 +10,15 @@ import rospy
 from std_srvs.srv import Trigger
 
 from self_awareness.msg import Incidents, SelfAwareness
-from self_awareness_evaluation.live.measures import ERROR, Incident, Status
-from self_awareness_evaluation.live.processes import LiveError, await_condition, becomes_true
+from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, LiveError, await_condition,
+                                                      becomes_true)
+from self_awareness_evaluation.live.rows import ERROR, Incident, Status
 
 MONITOR = '/self_awareness'
 """The monitor's node."""
 
 QUIET_S = 3.0
 """The monitor has settled, and there is no alarm, for so long before the next fault [s]."""
-
-STARTED_WITHIN_S = 90.0
-"""What is started, robot or monitor, has said something after so long at the latest [s]."""
 
 _NO_STATUS_S = 15.0  # a starved CPU takes its time
 _SERVICE_WITHIN_S = 10.0
@@ -90,8 +88,8 @@ class MonitorListener:
     def _on_status(self, message: SelfAwareness) -> None:
         suspects = dict.fromkeys(suspect.source for suspect in message.suspects)  # each once
         status = Status(message.header.stamp.to_sec(), message.level, message.settling,
-                        message.evidence, tuple(suspects), message.message, message.component,
-                        message.kind, message.alarm, message.events)
+                        tuple(suspects), message.message, message.component, message.kind,
+                        message.alarm, message.events)
         with self._lock:
             self._statuses.append(status)
             self._heard_at = time.monotonic()

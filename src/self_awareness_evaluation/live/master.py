@@ -1,4 +1,4 @@
-"""The master of a live evaluation, on a free port of the loopback interface."""
+"""The master of a live session, on a free port of the loopback interface."""
 from __future__ import annotations
 
 import contextlib
@@ -10,17 +10,18 @@ import rosgraph
 import rosnode
 import rospy
 
-from self_awareness_evaluation.live.listeners import STARTED_WITHIN_S
-from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
-                                                      free_port)
+from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, LiveError, Processes,
+                                                      await_condition, free_port)
 
 
 @contextlib.contextmanager
-def own_master(folder: Path) -> Iterator[Processes]:
+def own_master(folder: Path, node: str, pinned: Sequence[str] = ()) -> Iterator[Processes]:
     """Start a master and make this process a node of it; nothing of it runs on afterwards.
 
     Args:
         folder: exists; for the logs of all processes that are started.
+        node: what this process is called.
+        pinned: command that runs the master on some cores; empty: on any.
 
     Raises:
         LiveError: the master does not answer in time.
@@ -30,14 +31,14 @@ def own_master(folder: Path) -> Iterator[Processes]:
                       ROS_LOG_DIR=str(folder / 'log'))
     os.environ.pop('ROS_HOSTNAME', None)
     with Processes(folder) as processes:
-        processes.start('roscore', 'roscore', '-p', str(port))
+        processes.start('roscore', *pinned, 'roscore', '-p', str(port))
         await_condition('the master answers', rosgraph.is_master_online, STARTED_WITHIN_S)
         # What it logs would be heard by the monitor.
-        rospy.init_node('evaluate', disable_signals=True, disable_rosout=True)
+        rospy.init_node(node, disable_signals=True, disable_rosout=True)
         try:
             yield processes
         finally:
-            rospy.signal_shutdown('the evaluation is over')
+            rospy.signal_shutdown('the session is over')
 
 
 def unregister(ended: Sequence[str]) -> None:

@@ -11,7 +11,7 @@ class Node:
 
     Args:
         name: of the node, after the first slash.
-        package: of ROS; empty: none, the program is a module beside this one.
+        package: of ROS.
         program: of the package.
         arguments: to the program; remappings and private parameters included.
         topics: on which it publishes all the time; those of a nodelet come from its manager.
@@ -35,15 +35,8 @@ KILL = 'killed (kill -9)'
 STOP = 'stopped (SIGSTOP, SIGCONT)'
 RESTART = 'ended and started again at once'
 HALF_RATE = 'publishes at half its rate'
-LATE = 'relays 60 ms late'
 STARVE = 'four busy processes on every core'
 """The kinds of faults."""
-
-LATE_S = 0.06
-"""By how much the late relay comes late [s]."""
-
-RELAY = Node('late_relay', '', 'late_relay', ('/odom', '/odom_relayed'), ('/odom_relayed',))
-"""The one node of this project: a relay that can come late. No packaged one can."""
 
 
 def _driver(name: str, *topics: str) -> Node:
@@ -133,7 +126,6 @@ NODES = (
           '/points_slow'),
     _tool('imu_drop', 'drop', '/imu_half', '/imu/data', '1', '2', '/imu_half'),
     _tool('scan_relay', 'relay', '/scan_relayed', '/scan', '/scan_relayed'),
-    RELAY,
     _tool('position', 'transform', '/position', '/odom', '/position', 'geometry_msgs/Point',
           'm.pose.pose.position', '--import', 'geometry_msgs'),
     Node('joystick', 'rostopic', 'rostopic',
@@ -159,7 +151,6 @@ FAULTS = (
     (RESTART, 'rear_threshold', 10.0),
     (HALF_RATE, 'front', 20.0),
     (HALF_RATE, 'rear', 20.0),
-    (LATE, 'late_relay', 20.0),
     (STARVE, '', 15.0),
 )
 """Kind, node (empty: the whole machine) and length [s], in the order in which they are induced."""

@@ -3,21 +3,19 @@ from __future__ import annotations
 
 import contextlib
 import subprocess
-import sys
 import time
 from pathlib import Path
 from typing import ContextManager, Dict, Iterator, List, Sequence
 
 import rospy
-from std_srvs.srv import SetBool
 
 from self_awareness_evaluation.live import drivers
 from self_awareness_evaluation.live.breaking import starved, stopped
 from self_awareness_evaluation.live.listeners import heard
 from self_awareness_evaluation.live.master import unregister
-from self_awareness_evaluation.live.packaged_nodes import (CAMERAS_HZ, HALF_RATE, KILL, LATE,
-                                                           NODES, PARAMETERS, RESTART, STOP, Node)
-from self_awareness_evaluation.live.processes import WARM_UP_S, LiveError, Processes, wait
+from self_awareness_evaluation.live.packaged_nodes import (CAMERAS_HZ, HALF_RATE, KILL, NODES,
+                                                           PARAMETERS, RESTART, STOP, Node)
+from self_awareness_evaluation.live.processes import WARM_UP_S, Processes, wait
 
 _RATE = 'publish_rate'  # of image_publisher
 _SERVICE_WITHIN_S = 10.0
@@ -65,9 +63,7 @@ class PackagedSystem:
             return stopped(self._running[node].pid)
         if kind == RESTART:
             return self._restarted(node)
-        if kind == HALF_RATE:
-            return _halved(node)
-        return _late(node) if kind == LATE else starved()
+        return _halved(node) if kind == HALF_RATE else starved()
 
     @contextlib.contextmanager
     def _killed(self, name: str) -> Iterator[float]:
@@ -100,10 +96,8 @@ class PackagedSystem:
 
     def _command(self, node: Node) -> List[str]:
         namespace, _, name = f'/{node.name}'.rpartition('/')
-        module = f'self_awareness_evaluation.live.{node.program}'
-        return [*(['rosrun', node.package, node.program] if node.package
-                  else [sys.executable, '-m', module]),
-                *node.arguments, *([str(self._folder / node.file)] if node.file else []),
+        return ['rosrun', node.package, node.program, *node.arguments,
+                *([str(self._folder / node.file)] if node.file else []),
                 f'__name:={name}', f'__ns:={namespace or "/"}']
 
 
@@ -118,20 +112,3 @@ def _halved(name: str) -> Iterator[float]:
     finally:
         client.update_configuration({_RATE: CAMERAS_HZ[name]})
         client.close()
-
-
-@contextlib.contextmanager
-def _late(name: str) -> Iterator[float]:
-    _call(f'/{name}/late', True)
-    try:
-        yield time.time()
-    finally:
-        _call(f'/{name}/late', False)
-
-
-def _call(service: str, value: bool) -> None:
-    try:
-        rospy.wait_for_service(service, _SERVICE_WITHIN_S)
-        rospy.ServiceProxy(service, SetBool)(value)
-    except (rospy.ROSException, rospy.ServiceException) as error:
-        raise LiveError(f'{service}: {error}') from error

@@ -1,6 +1,7 @@
 """The plans: which robot, what is learned of it, what is done to it, and what runs beside it."""
 from __future__ import annotations
 
+import argparse
 import random
 import time
 from functools import partial
@@ -8,13 +9,13 @@ from pathlib import Path
 from typing import Dict, Iterator, Sequence, Tuple
 
 from self_awareness_evaluation.live import recovery
-from self_awareness_evaluation.live.breaking import Bursts
+from self_awareness_evaluation.live.breaking import bursts
 from self_awareness_evaluation.live.follow_me import CRASH, HANG, FollowMe
 from self_awareness_evaluation.live.packaged_nodes import FAULTS
 from self_awareness_evaluation.live.packaged_system import PackagedSystem
 from self_awareness_evaluation.live.processes import Processes
-from self_awareness_evaluation.live.recordings import BAGS, EVENTS, SESSION, record_command
-from self_awareness_evaluation.live.reliability import AT_RANDOM, HANGS
+from self_awareness_evaluation.live.recordings import BAGS, EVENTS
+from self_awareness_evaluation.live.results import AT_RANDOM, HANGS
 from self_awareness_evaluation.live.session import Plan, Step
 from self_awareness_evaluation.records import NORMAL, Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
@@ -50,65 +51,69 @@ _SHARE_OF_SHORT = 0.15
 _VICTIM = 'player'
 _BACK_WITHIN_S = 60.0
 _CRASH_RESPAWNED_S = 1.0  # who was killed is back at once
-# What the monitor and its operator say is no part of the robot.
-_EXCLUDED = '/rosout_agg|/self_awareness/.*|/diagnostics.*'
 
 
-def live(rounds: int, learning: Learning, folder: Path, processes: Processes) -> Plan:
-    """Return the plan of `evaluate live`: each kind of fault in each round."""
+def live(given: argparse.Namespace, learning: Learning, _: Path, processes: Processes) -> Plan:
+    """Return the plan of `evaluate live`: each kind of fault in each round.
+
+    Args, as of all plans:
+        given: the arguments of the command.
+        learning: how much is recorded to learn from.
+        folder: exists; for what the robot needs.
+        processes: to start programs among.
+    """
     robot = FollowMe(processes, seed=0)
 
     def steps() -> Iterator[Step]:
-        for number in range(1, rounds + 1):
+        for number in range(1, given.rounds + 1):
             yield Step(NORMAL, NORMAL_S, is_normal=True, round=number, reset=True)
             for name, lasts_s in FAULTS_S.items():
                 yield Step(name, lasts_s, robot.culprits(name), partial(robot.broken, name),
                            round=number, reset=True)
 
-    # In one file.
-    recorder = record_command(folder / SESSION, BAGS, f'exclude:={_EXCLUDED}', 'split:=10000')
-    return Plan(robot, BAGS, learning, steps(), AFTERMATH_S, 0.0, beside=[recorder])
+    return Plan(robot, BAGS, learning, steps(), AFTERMATH_S, 0.0)
 
 
-def nodes(minutes: float, burst_minutes: float, learning: Learning, folder: Path,
+def nodes(given: argparse.Namespace, learning: Learning, folder: Path,
           processes: Processes) -> Plan:
     """Return the plan of `evaluate nodes`: undisturbed, with bursts, and fault after fault."""
     system = PackagedSystem(folder, processes)
 
     def steps() -> Iterator[Step]:
-        for length_s in _pieces(60.0 * minutes):
+        for length_s in _pieces(60.0 * given.minutes):
             yield Step(UNDISTURBED, length_s, is_normal=True)
-        bursts = Bursts()
-        for length_s in _pieces(60.0 * burst_minutes):
-            yield Step(BURSTS, length_s, broken=bursts.run, is_normal=True)
+        chance = random.Random(1)
+        for length_s in _pieces(60.0 * given.burst_minutes):
+            yield Step(BURSTS, length_s, broken=partial(bursts, chance),
+                       is_normal=True)
         for kind, node, lasts_s in FAULTS:
             yield Step(kind, lasts_s, (f'/{node}',) if node else (),
                        partial(system.broken, kind, node), reset=True)
 
     # An operator looks on, with tools that training did not see.
     return Plan(system, BAGS, learning, steps(), _QUIET_S, _QUIET_WITHIN_S, beside=[
-        ['rosbag', 'record', '--all', '--output-name', str(folder / f'{SESSION}_operator')],
+        ['rosbag', 'record', '--all', '--output-name', str(folder / 'operator')],
         ['rostopic', 'echo', '/diagnostics']])
 
 
-def soak(minutes: float, seed: int, learning: Learning, _: Path, processes: Processes) -> Plan:
+def soak(given: argparse.Namespace, learning: Learning, _: Path, processes: Processes) -> Plan:
     """Return the plan of `evaluate soak`: faults at random."""
-    robot = FollowMe(processes, seed, SPEED)
-    return Plan(robot, EVENTS, learning, _at_random(robot, seed, minutes), AFTERMATH_S,
+    robot = FollowMe(processes, given.seed, SPEED)
+    return Plan(robot, EVENTS, learning, _at_random(robot, given), AFTERMATH_S,
                 _AT_RANDOM_QUIET_WITHIN_S, _BUDGET)
 
 
-def with_recovery(times: int, minutes: float, seed: int, learning: Learning, folder: Path,
+def with_recovery(given: argparse.Namespace, learning: Learning, folder: Path,
                   processes: Processes) -> Plan:
     """Return the plan of `evaluate recovery`: a node hangs again and again; faults at random."""
-    robot = FollowMe(processes, seed, SPEED, respawn=True)
+    robot = FollowMe(processes, given.seed, SPEED, respawn=True)
 
     def steps() -> Iterator[Step]:
         name, source = f'{HANG}:{_VICTIM}', f'/{_VICTIM}'
-        for _ in range(times):
+        for _ in range(given.times):
             yield Step(name, _BACK_WITHIN_S, (source,), partial(robot.broken, name), round=HANGS,
                        returned=recovery.returns(source, robot.topics[_VICTIM], _BACK_WITHIN_S))
-        yield from _at_random(robot, seed, minutes, AT_RANDOM, _CRASH_RESPAWNED_S)
+        yield from _at_random(robot, given, AT_RANDOM, _CRASH_RESPAWNED_S)
 
     restarts = recovery.RestartListener()
     command = recovery.command(folder / 'rules.yaml', list(robot.topics))
@@ -135,7 +140,7 @@ def drawn(possible: Sequence[str], seed: int) -> Iterator[Tuple[str, float, floa
             yield chance.choice(possible), after_s, round(chance.uniform(*LONG_S), 1)
 
 
-def _at_random(robot: FollowMe, seed: int, minutes: float, number: int = 1,
+def _at_random(robot: FollowMe, given: argparse.Namespace, number: int = 1,
                crash_s: float = LONG_S[1]) -> Iterator[Step]:
     """Yield faults at random, with normal operation between them, for some time.
 
@@ -143,8 +148,8 @@ def _at_random(robot: FollowMe, seed: int, minutes: float, number: int = 1,
         number: of the round.
         crash_s: a node that was killed is dead for so long at most [s].
     """
-    until = time.monotonic() + 60.0 * minutes
-    for name, after_s, lasts_s in drawn(robot.possible(), seed):
+    until = time.monotonic() + 60.0 * given.minutes
+    for name, after_s, lasts_s in drawn(robot.possible(), given.seed):
         left_s = until - time.monotonic()
         if after_s + lasts_s > left_s:
             yield Step(NORMAL, max(1.0, left_s), is_normal=True, round=number)

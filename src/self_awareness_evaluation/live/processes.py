@@ -14,6 +14,9 @@ from self_awareness import progress
 WARM_UP_S = 10.0
 """So long after the start of a robot is no normal operation yet [s]."""
 
+STARTED_WITHIN_S = 90.0
+"""What is started, robot or monitor, has said something after so long at the latest [s]."""
+
 _END_WITHIN_S = 30.0  # roslaunch takes half of it before it kills its nodes, which only it can
 _POLL_S = 0.05
 

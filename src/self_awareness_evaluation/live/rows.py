@@ -1,8 +1,10 @@
-"""The row of a live session: one for each stretch of time, whatever the plan."""
+"""The row of a live session: one for each stretch of time, by what the monitor said. No ROS here.
+"""
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Optional
+import math
+from dataclasses import dataclass, replace
+from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 
 MONITOR = 'evidence'
 """The system that listened: the monitor, by its detector."""
@@ -10,10 +12,57 @@ MONITOR = 'evidence'
 RESTARTED = 'restarted by the recovery'
 """The fault of a row that tells of a node that the recovery has restarted."""
 
+ERROR, WARN = 2, 1
+"""Levels of a status that are an alarm, and a suspicion."""
+
+_SEPARATOR = '; '  # between what was said of one alarm or suspicion, and of the next one
+_RECORDED = '; events in '  # before the file of the flight recorder, which only this machine has
+
+
+@dataclass(frozen=True)
+class Status:
+    """What the monitor says of a window.
+
+    Args:
+        stamp: end of the window [s since 1970].
+        level: that of the message SelfAwareness.
+        settling: whether it is too early for an alarm.
+        suspects: sources, the most likely first, each once.
+        message: what is abnormal, in words.
+        component: that is to blame; empty: none.
+        kind: what is wrong with it.
+        alarm: id of the alarm or suspicion.
+        events: in the window.
+    """
+
+    stamp: float
+    level: int
+    settling: bool
+    suspects: Tuple[str, ...] = ()
+    message: str = ''
+    component: str = ''
+    kind: str = ''
+    alarm: int = 0
+    events: int = 0
+
+    @property
+    def words(self) -> str:
+        """What is said, without the file."""
+        return self.message.split(_RECORDED)[0]
+
+
+class Incident(NamedTuple):
+    """What one cause has done: ids of its first and last alarm, and its times [s since 1970]."""
+
+    id: int
+    last: int
+    opened: float
+    ended: float
+
 
 @dataclass(frozen=True)
 class Row:
-    """A stretch of time as a system saw it; the columns of the CSV files.
+    """A stretch of time; the columns of the CSV files.
 
     All after `load` may be None: where that does not apply, never came, or was not measured.
 
@@ -27,23 +76,15 @@ class Row:
         void: why a fault does not count; empty: it does.
         said: of the alarm of a fault, in the monitor's words; of normal operation: each alarm
             and suspicion as it began.
-        evidence: of the alarm of a fault.
-        suspects: of that alarm, the most likely first, with a space between.
         note: what did not go as planned.
         load: the machine's load average of the last minute at the onset.
         alarms: of normal operation: how often an alarm (ERROR) was raised.
-        named: of normal operation: alarms that blamed a node as they began.
         suspicions: of normal operation: how often there was a suspicion (WARN) that did not
             become an alarm.
-        standing_s: of normal operation: time that an alarm stood.
-        expected: of normal operation: alarms an hour that calibrate expects.
-        watched: of normal operation: components that the system watches; None: it judges all
-            together.
-        components: of normal operation: that the model knows.
+        watched, components: of normal operation: how many the model watches, and knows.
         suspicion_s, latency_s: from the onset to the first WARN or ERROR, and to the first ERROR.
         blamed_s: from the onset to the first ERROR that blames the node.
-        first, among_three: whether the node is the first suspect, or among the first three, of
-            the first ERROR.
+        first: whether the node is the first suspect of the first ERROR.
         end_level, end_kind, end_component: what was said when the fault was undone.
         recovered_s: from the onset to when the node was as before.
         cleared_s: from then to the end of the alarm; 0: there was none then; inf: it stood to
@@ -54,7 +95,6 @@ class Row:
         events: that the monitor judged.
         memory_mb, threads, files: resident memory of the monitor [MB], its threads, and its open
             files and connections, at the end.
-        cpu: share of a core that the monitor took.
     """
 
     fault: str
@@ -65,22 +105,16 @@ class Row:
     lasted_s: float = 0.0
     void: str = ''
     said: str = ''
-    evidence: str = ''
-    suspects: str = ''
     note: str = ''
     load: float = 0.0
     alarms: Optional[int] = None
-    named: Optional[int] = None
     suspicions: Optional[int] = None
-    standing_s: Optional[float] = None
-    expected: Optional[float] = None
     watched: Optional[int] = None
     components: Optional[int] = None
     suspicion_s: Optional[float] = None
     latency_s: Optional[float] = None
     blamed_s: Optional[float] = None
     first: Optional[bool] = None
-    among_three: Optional[bool] = None
     end_level: Optional[int] = None
     end_kind: Optional[str] = None
     end_component: Optional[str] = None
@@ -93,7 +127,6 @@ class Row:
     memory_mb: Optional[float] = None
     threads: Optional[int] = None
     files: Optional[int] = None
-    cpu: Optional[float] = None
 
     @property
     def is_normal(self) -> bool:
@@ -106,12 +139,106 @@ class Row:
         return not self.is_normal and self.fault != RESTARTED
 
     @property
+    def end(self) -> float:
+        """When all was as before [s since 1970]."""
+        return self.onset + (self.lasted_s if self.recovered_s is None else self.recovered_s)
+
+    @property
     def brief(self) -> str:
         """The row for people who watch the session."""
         if self.is_normal:
             return (f'{self.fault}, {self.lasted_s:.0f} s: alarms: {self.alarms}, suspicions: '
                     f'{self.suspicions}; {self.said} {self.note}')
-        if not self.is_fault:
-            return f'{self.fault}: {self.node}'
-        return (f'{self.fault} {self.node}: {self.void or self.latency_s}, suspicion '
-                f'{self.suspicion_s}, cleared {self.cleared_s}; {self.said} {self.note}')
+        return f'{self.fault} {self.node}' + (
+            f': {self.void or self.latency_s}, suspicion {self.suspicion_s}, cleared '
+            f'{self.cleared_s}; {self.said} {self.note}' if self.is_fault else '')
+
+
+def measure(row: Row, statuses: Sequence[Status], incidents: Sequence[Incident] = ()) -> Row:
+    """Measure what the monitor said of a stretch of time.
+
+    Args:
+        row: what is known without it: of normal operation, with 0 alarms; of a fault, with
+            recovered_s, if the statuses go on after that. Its onset and lasted_s are the stretch.
+        statuses: of the whole session, in their order.
+        incidents: so far, in their order.
+    """
+    before = [status for status in statuses if status.stamp <= row.onset][-1:]
+    inside = [status for status in statuses
+              if row.onset < status.stamp <= row.onset + row.lasted_s]
+    row = replace(row, events=sum(status.events for status in inside) or None)
+    if row.is_normal:
+        begun = _begun(before, inside)
+        return replace(
+            row, lasted_s=row.lasted_s * _share(inside, lambda status: not status.settling),
+            alarms=sum(status.level >= ERROR for status in begun),
+            suspicions=sum(status.level == WARN for status in begun),
+            said=_SEPARATOR.join(f'{"ERROR" if status.level >= ERROR else "WARN"}: {status.words}'
+                                 for status in begun))
+    row = replace(row, void=row.void or _void(before, inside))
+    if row.recovered_s is not None:
+        row = replace(row, cleared_s=_cleared(row.end, statuses))
+    return row if row.void else _of_fault(row, inside, incidents)
+
+
+def _of_fault(row: Row, inside: Sequence[Status], incidents: Sequence[Incident]) -> Row:
+    guilty = {f'/{name}' for name in row.node.split()}
+    alarms = [status for status in inside if status.level >= ERROR]
+
+    def first_s(found: Sequence[Status]) -> Optional[float]:
+        return found[0].stamp - row.onset if found else None
+
+    row = replace(
+        row, end_level=inside[-1].level, end_kind=inside[-1].kind,
+        end_component=inside[-1].component, latency_s=first_s(alarms),
+        suspicion_s=first_s([status for status in inside if status.level >= WARN]),
+        blamed_s=first_s([status for status in alarms if status.component in guilty]))
+    if not alarms:
+        return row
+    alarm = alarms[0]
+    row = replace(row, said=alarm.words,
+                  first=bool(set(alarm.suspects[:1]) & guilty) if guilty else None)
+    for each in reversed(incidents):
+        if each.id <= alarm.alarm <= each.last:
+            return replace(row, incident_began_s=each.opened - row.onset,
+                           incident_ended_s=each.ended - row.onset)
+    return row
+
+
+def _void(before: Sequence[Status], inside: Sequence[Status]) -> str:
+    if not before or not inside:
+        return 'nothing was said'
+    if before[0].level >= ERROR:
+        return 'the alarm stood at the onset'
+    return 'the monitor settled at the onset' if before[0].settling else ''
+
+
+def _begun(before: Sequence[Status], inside: Sequence[Status]) -> List[Status]:
+    """Return the first status of every alarm, and of every suspicion beside them.
+
+    A suspicion before an alarm, or after it until all is well, is part of it.
+    """
+    found: List[Status] = []
+    level = highest = before[-1].level if before else 0
+    for status in inside:
+        if status.level < WARN:
+            highest = 0
+        elif level < ERROR <= status.level or highest < WARN:
+            if found and highest == WARN and found[-1].level == WARN:
+                found.pop()  # it became this alarm
+            found.append(status)
+        highest = max(highest, status.level)
+        level = status.level
+    return found
+
+
+def _cleared(recovered: float, statuses: Sequence[Status]) -> float:
+    after = [status for status in statuses if status.stamp > recovered]
+    standing = [status for status in after if status.level >= ERROR]
+    if not standing:
+        return 0.0
+    return math.inf if after[-1].level >= ERROR else standing[-1].stamp - recovered
+
+
+def _share(statuses: Sequence[Status], is_so: Callable[[Status], bool]) -> float:
+    return sum(map(is_so, statuses)) / max(1, len(statuses))

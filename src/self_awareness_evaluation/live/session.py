@@ -5,21 +5,19 @@ import os
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import (Any, Callable, ContextManager, Dict, Iterator, List, Optional,
-                    Sequence, Tuple)
+from typing import (Any, Callable, ContextManager, Dict, Iterator, List, Optional, Sequence,
+                    Tuple)
 
 import yaml
 
 from self_awareness import TrainedModel
 from self_awareness.calibration.limits import BUDGET
-from self_awareness_evaluation.live import usage
 from self_awareness_evaluation.live.breaking import nothing
-from self_awareness_evaluation.live.listeners import MONITOR, STARTED_WITHIN_S, MonitorListener
-from self_awareness_evaluation.live.measures import measure
-from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
-                                                      becomes_true, say, wait)
-from self_awareness_evaluation.live.recordings import Recorder, System
-from self_awareness_evaluation.live.rows import Row
+from self_awareness_evaluation.live.listeners import MONITOR, MonitorListener
+from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, LiveError, Processes,
+                                                      await_condition, becomes_true, say, wait)
+from self_awareness_evaluation.live.recordings import System, learn
+from self_awareness_evaluation.live.rows import Row, measure
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
 from self_awareness_follow_me.induction import process_id
@@ -82,8 +80,8 @@ class Plan:
     also: Callable[[], List[Row]] = list
 
 
-def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], None]) -> List[Row]:
-    """Run a session, and return its stretches, not yet measured.
+def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], None]) -> None:
+    """Run a session.
 
     The master runs, and this process is a node.
 
@@ -97,7 +95,7 @@ def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], No
         LiveError: a program failed, or something does not happen in time.
         InduceError: a fault cannot be induced.
     """
-    model = Recorder(plan.system, plan.what, folder, processes).learn(plan.learning, plan.budget)
+    model = learn(plan.system, plan.what, plan.learning, plan.budget, folder, processes)
     plan.system.start()
     monitor = MonitorListener()
     config = folder / 'monitor.yaml'
@@ -117,7 +115,6 @@ def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], No
     for process in beside:
         processes.end(process)
     plan.system.end()
-    return walk.stretches
 
 
 class Walk:
@@ -131,7 +128,6 @@ class Walk:
 
     def __init__(self, plan: Plan, monitor: MonitorListener,
                  promised: Dict[str, Any]) -> None:
-        self.stretches: List[Row] = []
         self._plan = plan
         self._monitor = monitor
         self._promised = promised
@@ -141,7 +137,6 @@ class Walk:
     def take(self, step: Step) -> Row:
         """Induce a fault and undo it, or let normal operation pass; return what was measured."""
         note = self._monitor.reset_until_quiet() if step.reset else ''
-        before = usage.look(self._pid)
         with step.broken() as onset:
             if step.is_normal and self._normal_since is not None:
                 onset = self._normal_since
@@ -157,9 +152,8 @@ class Walk:
         else:
             row = self._over(row)
         becomes_true(lambda: self._monitor.statuses[-1].stamp > end, _STATUS_WITHIN_S)
-        self.stretches.append(row)
-        row = measure(row, self._monitor.statuses, self._monitor.incidents)
-        row = usage.added(row, before, usage.look(self._pid))
+        row = replace(measure(row, self._monitor.statuses, self._monitor.incidents),
+                      **used(self._pid))
         if back is not None and row.blamed_s is not None:
             row = replace(row, back_s=back - onset - row.blamed_s)
         return row
@@ -198,5 +192,20 @@ def _promised(path: Path) -> Dict[str, Any]:
     if model.calibration is None:
         raise LiveError(f'{path}: calibrate has written no limits')
     coverage = model.coverage()
-    return {'expected': model.calibration.false_alarms_per_hour, 'components': len(coverage),
-            'watched': sum(each.is_watched for each in coverage)}
+    return {'components': len(coverage), 'watched': sum(each.is_watched for each in coverage)}
+
+
+def used(pid: int) -> Dict[str, Any]:
+    """Return what a process uses now, by the columns of a row.
+
+    Raises:
+        LiveError: it has ended.
+    """
+    process = Path('/proc') / str(pid)
+    try:
+        fields = dict(line.split(':', 1) for line in (process / 'status').read_text().splitlines())
+        # "kB" of /proc are 1024 bytes.
+        return {'memory_mb': int(fields['VmRSS'].split()[0]) * 1024 / 1e6,
+                'threads': int(fields['Threads']), 'files': len(list((process / 'fd').iterdir()))}
+    except (FileNotFoundError, ProcessLookupError) as error:
+        raise LiveError(f'process {pid} has ended') from error

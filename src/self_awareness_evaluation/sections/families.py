@@ -11,7 +11,7 @@ from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LO
 from self_awareness_evaluation.figures import WITHIN_S, Found, Quiet, grouped, normal, of_fault
 from self_awareness_evaluation.robots import family_of
 from self_awareness_evaluation.rows import Row
-from self_awareness_evaluation.sections.page import RESEARCH, RESULTS, Section
+from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
 from self_awareness_evaluation.tables import (NONE, interval, number, part, percent, rate, seconds,
                                               shares, table)
 
@@ -57,18 +57,18 @@ def started(learning: str) -> str:
 
 
 def _results(by_learning: Dict[str, List[Row]]) -> List[str]:
-    """Return the table of all families together, in words."""
-    body = [['false alarms an hour (95 %)', *(cell for rows in by_learning.values() for cell in (
-        rate(Quiet.of(normal(rows))), NONE))]]
+    """Return the table of all families together, in words; who is named, by the last learning."""
+    body = [['false alarms an hour (95 %)',
+             *(rate(Quiet.of(normal(rows))) for rows in by_learning.values()), NONE]]
     for kind in KINDS:
         found = [Found.of(of_fault(rows, kind)) for rows in by_learning.values()]
         if found[0].records:
-            body.append([TITLES[kind], *(cell for each in found for cell in (
-                f'{percent(each.share())} ({interval(each)}), {seconds(each.median_s)}',
-                f'{part(each.first)} / {part(each.at_end)}'))])
+            body.append([TITLES[kind], *(
+                f'{percent(each.share())} ({interval(each)}), {seconds(each.median_s)}'
+                for each in found), f'{part(found[-1].first)} / {part(found[-1].at_end)}'])
     named = [Found.of(of_fault(rows, '')).bystanders for rows in by_learning.values()]
-    return [*table(['what', *(cell for learning in by_learning for cell in (
-        f'{started(learning)}: alarm (95 %), median', 'the right node first / at the end'))],
+    return [*table(['what', *(f'{started(learning)}: alarm (95 %), median'
+                              for learning in by_learning), 'the right node first / at the end'],
                    body), '', 'Alarms that name a node which has nothing to do with the fault: '
             + '; '.join(f'{some} of {all_}' for some, all_ in named) + '.']
 

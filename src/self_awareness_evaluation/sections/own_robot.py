@@ -6,8 +6,8 @@ from typing import Callable, Dict, List, Sequence, Tuple
 from self_awareness_evaluation.figures import Found, Quiet, grouped, normal, of_fault, quantile
 from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.rows import Row
-from self_awareness_evaluation.sections.page import RESEARCH, RESULTS, Section
-from self_awareness_evaluation.simulated.records import WITHIN_S
+from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
+from self_awareness_evaluation.simulated import WITHIN_S
 from self_awareness_evaluation.tables import (NONE, interval, number, part, percent, rate, seconds,
                                               share, table)
 
@@ -59,10 +59,10 @@ def _results(rows: Sequence[Row]) -> List[str]:
     for name, of_kind in _kinds(rows).items():
         if name in TOLD:
             found = Found.of(of_kind)
-            body.append([TOLD[name], percent(found.share()), interval(found),
-                         seconds(found.median_s), part(found.first), part(found.at_end)])
-    return [*table(['what happens', 'alarm', '95 %', 'median time to it', 'the right node first',
-                    'the right node at the end'], body), '',
+            body.append([TOLD[name], f'{percent(found.share())} ({interval(found)})',
+                         seconds(found.median_s), f'{part(found.first)} / {part(found.at_end)}'])
+    return [*table(['what happens', 'alarm (95 %)', 'median', 'the right node first / at the end'],
+                   body), '',
             f'False alarms an hour: {rate(Quiet.of(rows))}.']
 
 

@@ -63,22 +63,8 @@ inline std::vector<Coverage::Blind> blindIn(const core::Model& model) {
   return all;
 }
 
-/// The begin of an alarm.
-struct Begun {
-  std::int64_t time = 0;  // end of the window [ns]
-  std::string evidence;
-  std::vector<Suspect> suspects;
-};
-
-/// The first alarm of a recording.
 inline std::optional<Begun> alarmIn(const core::Model& model, const Events& events) {
-  std::optional<Begun> alarm;
-  judge(model.makeJudge(), events, [&](const Verdict& verdict) {
-    if (!alarm && verdict.alarm) {
-      alarm = {verdict.window->start + model.window, verdict.evidence, verdict.suspects};
-    }
-  });
-  return alarm;
+  return alarmIn(model.makeJudge(), events);
 }
 
 /// Changes what all messages of the first source say.

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -36,6 +39,24 @@ void judge(std::unique_ptr<core::Judge> judge, const Events& events, OnVerdict o
   Detector detector(std::move(judge), kWindow, {}, onVerdict);
   addAll(detector, events);
   detector.finish();
+}
+
+/// The begin of an alarm.
+struct Begun {
+  std::int64_t time = 0;  // end of the window [ns]
+  std::string evidence;
+  std::vector<Suspect> suspects;
+};
+
+/// The first alarm of a recording.
+inline std::optional<Begun> alarmIn(std::unique_ptr<core::Judge> judging, const Events& events) {
+  std::optional<Begun> alarm;
+  judge(std::move(judging), events, [&](const Verdict& verdict) {
+    if (!alarm && verdict.alarm) {
+      alarm = {verdict.window->start + kWindow, verdict.evidence, verdict.suspects};
+    }
+  });
+  return alarm;
 }
 
 inline std::vector<EventId> idsOf(const std::vector<Suspect>& suspects) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <set>
@@ -96,52 +95,29 @@ TEST(EvidenceTuning, WhatWasNotSetByItsNameIsCheckedToo) {
   }
 }
 
-TEST(EvidenceTuning, ALeastEffectIsTheLargerOfTimeAndShare) {
-  Tuning tuning;
-  tuning.least_effect = 0.01;
-  tuning.least_effect_of_period = 0.03;
-  EXPECT_DOUBLE_EQ(tuning.leastEffectOnDelay(100e6), 10e6);
-  EXPECT_DOUBLE_EQ(tuning.leastEffectOnDelay(1e9), 30e6);
+Events robot(unsigned seed) {
+  return later(followed(seed, 70 * kSecond), seed * kStart);
 }
 
 TEST(EvidenceTuning, AChannelThatIsSwitchedOffIsNotWatched) {
-  const auto start = [](unsigned seed) {
-    Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
-    for (Event& each : asked) {
-      each.attributes = messages(kA, 0, 1, Source{}).front().attributes;
-    }
-    // C pauses when A and B do.
-    Events pausing;
-    for (const Event& event : together({asked, answers(kB, asked, 20 * kMillisecond),
-                                        timer(kC, 0, 100 * kSecond, 150 * kMillisecond)})) {
-      if (event.stamp / (5 * kSecond) % 2 == 0) {
-        pausing.push_back(event);
-      }
-    }
-    return countsOf({later(pausing, seed * kStart), later(pausing, (seed + 2) * kStart)});
-  };
   const auto channels = [&](const std::set<std::string>& without) {
     Tuning tuning;
     tuning.without = without;
-    tuning.changing_time = 0;
     std::set<std::string> watched;
-    for (const Track& track : watch(start(1), start(2), {}, tuning).tracks) {
+    for (const Track& track :
+         watch(countsOf({robot(1)}), countsOf({robot(2)}), {}, tuning).tracks) {
       watched.insert(channelName(track));
     }
     return watched;
   };
   const std::set<std::string> all = channels({});
-  const std::vector<std::string> names = channelNames();
-  EXPECT_EQ(all, std::set<std::string>(names.begin(), names.end()));
+  ASSERT_EQ(all.count(kPairs), 1U);
   for (const std::string& channel : all) {
     std::set<std::string> others = all;
     others.erase(channel);
     EXPECT_EQ(channels({channel}), others);
   }
-}
-
-Events robot(unsigned seed) {
-  return later(followed(seed, 70 * kSecond), seed * kStart);
+  EXPECT_THROW(channels({kPairs, "smell"}), std::invalid_argument);
 }
 
 TEST(EvidenceTuning, EveryEndOfARangeGivesLimitsOrSaysWhyNot) {

@@ -3,13 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <random>
+#include <stdexcept>
 #include <vector>
 
 #include "core/paper/delay_bins.h"
+#include "core/paper/delay_trainer.h"
+#include "self_awareness/core/paper/delay_statistics.h"
+#include "self_awareness/core/stream/clock.h"
 
 namespace self_awareness::core::paper {
 namespace {
@@ -87,19 +90,6 @@ TEST(Histogram, OrderDoesNotMatter) {
   }
 }
 
-TEST(Histogram, MergesInAnyOrder) {
-  const std::vector<std::int64_t> a = randomBins(1);
-  const std::vector<std::int64_t> b = randomBins(2);
-  std::vector<std::int64_t> both = a;
-  both.insert(both.end(), b.begin(), b.end());
-  Histogram a_then_b = histogramOf(a);
-  a_then_b.merge(histogramOf(b));
-  Histogram b_then_a = histogramOf(b);
-  b_then_a.merge(histogramOf(a));
-  EXPECT_TRUE(a_then_b == histogramOf(both));
-  EXPECT_TRUE(a_then_b == b_then_a);
-}
-
 TEST(Histogram, CopiesAreIndependent) {
   Histogram histogram = histogramOf(randomBins(3));
   histogram.add(kTwoTo32);
@@ -133,12 +123,6 @@ TEST(Histogram, BinsBeyond32Bits) {
       histogramOf({5, kTwoTo32 + 5, kTwoTo32 - 1, kTwoTo32, largest, kTwoTo32 + 5});
   expectCounts(histogram,
                {{5, 1}, {kTwoTo32 - 1, 1}, {kTwoTo32, 1}, {kTwoTo32 + 5, 2}, {largest, 1}});
-}
-
-TEST(Histogram, AddingNothingAddsNoBin) {
-  Histogram histogram;
-  histogram.add(5, 0);
-  expectCounts(histogram, {});
 }
 
 TEST(DelayBins, AreThoseOfTheBinning) {
@@ -179,6 +163,65 @@ TEST(Histogram, GrowsBinByBinInNoTime) {
   EXPECT_EQ(histogram.count(kNumber - 1), 3U);
   EXPECT_EQ(histogram.count(kNumber), 2U);
   EXPECT_EQ(histogram.entries().size(), 2U * kNumber);
+}
+
+const EventType kA{"/a", "/x", "T"};
+const EventType kB{"/b", "/y", "T"};
+const EventType kC{"/c", "/z", "T"};
+
+struct Occurrence {
+  std::int64_t stamp;
+  EventType type;
+};
+using Recording = std::vector<Occurrence>;
+
+void train(const Recording& recording, DelayStatistics& statistics) {
+  DelayTrainer trainer(statistics);
+  for (const Occurrence& occurrence : recording) {
+    trainer.add({occurrence.stamp, statistics.intern(occurrence.type)});
+  }
+}
+
+Recording randomRecording(unsigned seed, const std::vector<EventType>& types) {
+  std::mt19937 random(seed);
+  Recording recording;
+  std::int64_t stamp = 1000000000;
+  for (int i = 0; i < 2000; ++i) {
+    stamp += static_cast<std::int64_t>(random() % 30000000);
+    recording.push_back({stamp, types[random() % types.size()]});
+  }
+  return recording;
+}
+
+TEST(Binning, RefusesImpossibleValues) {
+  EXPECT_THROW(DelayStatistics(Binning{0, 0}), std::invalid_argument);
+  EXPECT_THROW(DelayStatistics(Binning{-5, 0}), std::invalid_argument);
+  EXPECT_THROW(DelayStatistics(Binning{10, -1}), std::invalid_argument);
+}
+
+TEST(DelayStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
+  const Recording first = randomRecording(1, {kA, kB});
+  const Recording second = randomRecording(2, {kC, kB});  // other types in another order
+  DelayStatistics both(Binning{10000000, 0});
+  train(first, both);
+  train(second, both);
+  DelayStatistics sum(Binning{10000000, 0});
+  DelayStatistics other(Binning{10000000, 0});
+  train(first, sum);
+  train(second, other);
+  EXPECT_FALSE(sum == both);
+  sum.merge(other);
+  EXPECT_TRUE(sum == both);
+}
+
+TEST(DelayStatistics, RefusesToAddWhatWasBinnedDifferently) {
+  DelayStatistics fine(Binning{5000000, 0});
+  const DelayStatistics coarse(Binning{10000000, 0});
+  EXPECT_THROW(fine.merge(coarse), std::invalid_argument);
+}
+
+TEST(Vocabulary, RefusesATypeThatOccursTwice) {
+  EXPECT_THROW(Vocabulary({kA, kB, kA}), std::invalid_argument);
 }
 
 }  // namespace

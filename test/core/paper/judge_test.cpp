@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "core/paper/delay_trainer.h"
 #include "core/paper/scorer.h"
@@ -42,20 +41,6 @@ class PaperJudgeTest : public testing::Test {
   std::unique_ptr<core::Judge> judge_ = makeJudge(model_, 0.1, true);
   Window window_;
 };
-
-TEST_F(PaperJudgeTest, TheScoreOfAWindowIsTheMeanOverItsEvents) {
-  Scorer scorer(model_);
-  std::vector<double> scores;
-  for (const Event& event : std::vector<Event>{{0, 0}, {20000000, 1}, {kPeriod, 0}}) {
-    scores.push_back(scorer.score(event).score);
-    add(event);
-  }
-  EXPECT_EQ(judge(kPeriod + 1).score, (scores[0] + scores[1] + scores[2]) / 3);
-  const Event next{kPeriod + 20000000, 1};
-  add(next);  // the next window has its own mean
-  EXPECT_EQ(judge(2 * kPeriod).score, scorer.score(next).score);
-  EXPECT_FALSE(judge(3 * kPeriod).score);
-}
 
 TEST_F(PaperJudgeTest, ARestartForgetsTheScoresOfTheOpenWindow) {
   add({0, 0});

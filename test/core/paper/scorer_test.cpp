@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <random>
@@ -14,6 +15,7 @@
 #include "core/paper/delay_trainer.h"
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/paper/model.h"
+#include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::paper {
 namespace {
@@ -102,19 +104,6 @@ TEST(PaperScorer, ScoresLiterallyForAnyNumberOfTypes) {
   }
 }
 
-TEST(PaperScorer, ScoresLiterallyWithScatteredDelays) {
-  const std::vector<Event> training = randomEvents(1, 20, 15, 3000, 500000000);
-  const DelayStatistics statistics = train(Binning{10000000, 0}, 20, training);
-  expectLiteralScores(statistics, training);
-  expectLiteralScores(statistics, randomEvents(2, 20, 15, 1000, 500000000));
-}
-
-TEST(PaperScorer, ScoresLiterallyWithAHorizon) {
-  const std::vector<Event> training = randomEvents(1, 20, 15, 3000, 20000000);
-  const DelayStatistics statistics = train(Binning{10000000, 20}, 20, training);
-  expectLiteralScores(statistics, randomEvents(2, 20, 15, 1000, 20000000));
-}
-
 TEST(PaperScorer, ScoresLiterallyWhereBinsNeed33Bits) {
   const std::vector<Event> training = randomEvents(1, 3, 2, 500, 2000000000);
   const DelayStatistics statistics = train(Binning{1, 0}, 3, training);
@@ -146,6 +135,28 @@ TEST(PaperModel, KnowsWhatAnEventScoresOnTheAverage) {
     }
     EXPECT_NEAR(model.expectedScore(to), expected, 1e-12);
   }
+}
+
+constexpr std::int64_t kMillisecond = 1000000;
+constexpr std::int64_t kSecond = 1000 * kMillisecond;
+
+TEST(PaperModel, ATypeWithFewGapsHasNoOpinion) {
+  DelayStatistics statistics(Binning{10 * kMillisecond, 0});
+  const EventId rare = statistics.intern({"/player", "/scan", "sensor_msgs/LaserScan"});
+  const EventId common = statistics.intern({"/slam", "/pose", "geometry_msgs/PoseStamped"});
+  DelayTrainer trainer(statistics);
+  for (std::uint64_t i = 0; i <= kFewestGaps; ++i) {
+    trainer.add({static_cast<std::int64_t>(i) * kSecond, common});
+    if (i < kFewestGaps) {
+      trainer.add({static_cast<std::int64_t>(i) * kSecond, rare});
+    }
+  }
+  const Model model(statistics);
+  EXPECT_EQ(model.logSurvival(rare, 3600 * kSecond), 0);
+  // The tail adds one virtual gap to 30 of 1 s: 1.01 s is the upper edge of the longest gap's bin.
+  EXPECT_NEAR(model.logSurvival(common, 2 * kSecond), -2 / 1.01 - std::log(31), 1e-12);
+  EXPECT_NEAR(model.logSurvival(common, kSecond),
+              std::log(30 + std::exp(-1 / 1.01)) - std::log(31), 1e-12);
 }
 
 }  // namespace

@@ -97,11 +97,12 @@ class Vectors : public testing::Test {
   json vectors_;
 };
 
-TEST_F(Vectors, Counts) {
+TEST_F(Vectors, CountsEntropiesAndWeights) {
   for (const json& test_case : vectors_["cases"]) {
     SCOPED_TRACE(test_case["name"].get<std::string>());
     const DelayStatistics statistics = train(test_case);
-    forEachPair(test_case["counts"], statistics.vocabulary(),
+    const Model model(statistics);
+    forEachPair(test_case["counts"], model.vocabulary(),
                 [&](EventId from, EventId to, const json& expected) {
                   std::map<std::string, std::uint64_t> counts;
                   for (const Histogram::Entry& entry : statistics.pair(from, to).entries()) {
@@ -109,13 +110,6 @@ TEST_F(Vectors, Counts) {
                   }
                   EXPECT_EQ(counts, (expected.get<std::map<std::string, std::uint64_t>>()));
                 });
-  }
-}
-
-TEST_F(Vectors, EntropiesAndWeights) {
-  for (const json& test_case : vectors_["cases"]) {
-    SCOPED_TRACE(test_case["name"].get<std::string>());
-    const Model model(train(test_case));
     forEachPair(test_case["entropy_bits"], model.vocabulary(),
                 [&](EventId from, EventId to, const json& expected) {
                   EXPECT_NEAR(model.entropy(from, to), value(expected), kExact);

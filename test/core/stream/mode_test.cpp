@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "self_awareness/core/stream/vocabulary.h"
 
 namespace self_awareness::core {
@@ -11,15 +9,6 @@ namespace {
 
 constexpr EventId kDriving = 3;
 constexpr EventId kDocked = 5;
-constexpr std::int64_t kTick = ModeTime::kTick;
-
-std::vector<std::int64_t> ticksUntil(ModeTime& mode, std::int64_t now) {
-  std::vector<std::int64_t> stamps;
-  while (const std::optional<Event> tick = mode.tickUntil(now)) {
-    stamps.push_back(tick->stamp);
-  }
-  return stamps;
-}
 
 TEST(ModeType, SaysItsMode) {
   const EventType type{"/logic", "/state", typeOfMode("std_msgs/String", "DRIVING [x]")};
@@ -95,19 +84,6 @@ TEST(ModeTime, ARestartForgetsTimeAndNotTheMode) {
   mode.begin(1000);
   mode.begin(2000);
   EXPECT_EQ(mode.lasted(kDriving, 2500), 1500) << "from the first event on";
-}
-
-TEST(ModeTime, TicksAsOftenAsItHasLasted) {
-  ModeTime mode;
-  EXPECT_FALSE(mode.tickUntil(10 * kTick));
-  mode.enter(kDriving, 100);
-  EXPECT_EQ(ticksUntil(mode, 100), std::vector<std::int64_t>{100});
-  EXPECT_EQ(ticksUntil(mode, 2 * kTick + 99), std::vector<std::int64_t>{kTick + 100});
-  mode.enter(kDocked, 2 * kTick);
-  EXPECT_EQ(ticksUntil(mode, 2 * kTick), std::vector<std::int64_t>{2 * kTick});
-  mode.enter(kDriving, 2 * kTick + 500);
-  EXPECT_EQ(ticksUntil(mode, 3 * kTick), std::vector<std::int64_t>{2 * kTick + 600})
-      << "100 ns are left of the second tick";
 }
 
 }  // namespace

@@ -69,15 +69,6 @@ TEST(Windows, TheLastOneEndsWithWhatIsKnown) {
   EXPECT_FALSE(windows.lastStamp());
 }
 
-TEST(Windows, ALateEventDoesNotTakeTimeBack) {
-  Told told;
-  Windows windows(100, told);
-  windows.add({90, 1});
-  windows.add({20, 1});
-  windows.finish();
-  EXPECT_EQ(told.told, "11[0 90 2]");
-}
-
 TEST(Windows, AStepOfTheClockStartsANewRecording) {
   for (const std::int64_t step : {-(kLatestEvent + 1), kLongestSilence + 1}) {
     Told told;

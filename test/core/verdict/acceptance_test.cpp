@@ -49,13 +49,6 @@ TEST(Acceptances, AModeIsTakenBackByItselfItsKindOrOneOfIt) {
   EXPECT_EQ(left(accepted("/arm", "/joints")), 3U) << "a mode has no topic";
 }
 
-TEST(Acceptances, OfConnectionsTheTopicIsTheOneThatIsNotSubscribedTo) {
-  const Acceptances accepted_now = allOf({accepted("/faces", "/image", Kind::kUnsubscribed)});
-  EXPECT_TRUE(accepted_now.covers("/faces", "/image", Kind::kUnsubscribed));
-  EXPECT_FALSE(accepted_now.covers("/faces", "/depth", Kind::kUnsubscribed));
-  EXPECT_FALSE(accepted_now.covers("/faces", "/image", Kind::kSilent));
-}
-
 TEST(Acceptances, WhoMayBeSilentMayDoAnything) {
   for (const std::optional<Kind>& kind : {std::optional<Kind>(), {Kind::kSilent}}) {
     const Acceptances accepted_now = allOf({accepted("", "/image", kind)});

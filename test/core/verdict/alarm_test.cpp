@@ -206,32 +206,6 @@ TEST_F(AlarmsTest, WhereSomeStoppedTogetherItIsANewModeAndNobodyIsToBlame) {
   EXPECT_EQ(alarms_.standing()->culprit, "/b") << "another one meanwhile";
 }
 
-TEST_F(AlarmsTest, WhoStopsOnABusyMachineIsInANewModeOnceThatIsFree) {
-  Verdict mode = verdict(kSuspicion);
-  mode.evidence = "busy, new mode";
-  mode.busy = Busy{0, 0, 1.8};
-  add(mode);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
-  mode.silent = Silent{{}, {"/a", "/b", "/c", "/d"}, kStart, true};
-  add(mode);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
-  mode.busy.reset();
-  add(mode);
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kNewMode);
-  EXPECT_EQ(alarms_.standing()->silent->components.size(), 4U);
-}
-
-TEST_F(AlarmsTest, ComputersThatFellSilentAreNamedAndNobodyIsToBlame) {
-  add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
-  addSilent({{"base"}, {"/a", "/b"}, kStart});
-  expectBlamed("", Kind::kAllSilent);
-  EXPECT_EQ(alarms_.standing()->reason, "everything on host base fell silent: 2 nodes");
-  addSilent({{"arm", "base", "head"}, {"/a", "/b", "/c"}, kStart});
-  add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
-  EXPECT_EQ(alarms_.standing()->reason,
-            "everything on hosts arm, base and head fell silent: 3 nodes");
-}
-
 TEST_F(AlarmsTest, WhoDiedOnAnotherComputerBeforeIsStillToBlame) {
   add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   addSilent({{"base"}, {"/a", "/c"}, kStart});
@@ -246,16 +220,6 @@ TEST_F(AlarmsTest, NamesStrangersAndTopicsWhereSourcesAreNotKnown) {
   alarms_.end(kStart);
   add(verdict(kSuspicion, {suspect(7, Kind::kStranger)}));
   EXPECT_EQ(alarms_.standing()->culprit, "") << "of that id nothing is known";
-}
-
-TEST_F(AlarmsTest, WhereNobodyStandsOutThereIsNoCulprit) {
-  Verdict nobody = verdict(kAlarm);
-  nobody.evidence = "score";
-  add(nobody);
-  EXPECT_EQ(alarms_.standing()->culprit, "");
-  EXPECT_EQ(alarms_.standing()->reason, "");
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kOutOfOrder);
-  EXPECT_EQ(alarms_.standing()->evidence, "score");
 }
 
 TEST_F(AlarmsTest, WhoWasMissedBeforeTheCulpritFailedIsToBlame) {

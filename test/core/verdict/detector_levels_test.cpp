@@ -2,25 +2,16 @@
 
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "accepted.h"
 #include "told_judge.h"
 
 namespace self_awareness::core {
 namespace {
 
 class DetectorLevelsTest : public ToldTest {};
-
-TEST_F(DetectorLevelsTest, NormalOperationIsNoSuspicion) {
-  start();
-  windows(100);
-  EXPECT_FALSE(verdict_.suspicion);
-  EXPECT_FALSE(verdict_.alarm);
-  EXPECT_TRUE(verdict_.suspects.empty());
-  EXPECT_EQ(changes_, 0);
-}
 
 TEST_F(DetectorLevelsTest, WhoStopTogetherAreANewModeOnceTheyStayAway) {
   start();
@@ -105,13 +96,6 @@ TEST_F(DetectorLevelsTest, APauseBeforeTimeWentBackHoldsNoAlarmOfAfterIt) {
   EXPECT_FALSE(verdict_.alarm);
 }
 
-TEST_F(DetectorLevelsTest, WhatWasMissedSettles) {
-  start();
-  detector_->onMissed({3, 4}, 70 * kSecond);
-  EXPECT_EQ(judge_->settling().at(3), 73 * kSecond);
-  EXPECT_EQ(judge_->settling().at(4), 73 * kSecond);
-}
-
 TEST_F(DetectorLevelsTest, OneAbnormalWindowIsASuspicionThatEndsAfterTheHoldTime) {
   start();
   EXPECT_TRUE(abnormalWindow().suspicion);
@@ -125,18 +109,6 @@ TEST_F(DetectorLevelsTest, OneAbnormalWindowIsASuspicionThatEndsAfterTheHoldTime
   EXPECT_FALSE(window().suspicion);
   EXPECT_TRUE(verdict_.changed);
   EXPECT_EQ(changes_, 2);
-}
-
-TEST_F(DetectorLevelsTest, WhatIsOnTheWayToAbnormalIsASuspicion) {
-  start();
-  told_->suspicious = true;
-  told_->evidence = "linker";
-  windows(100);
-  EXPECT_TRUE(verdict_.suspicion);
-  EXPECT_FALSE(verdict_.abnormal);
-  EXPECT_FALSE(verdict_.alarm);
-  EXPECT_EQ(verdict_.evidence, "linker");
-  EXPECT_EQ(verdict_.suspects.size(), 1U);
 }
 
 TEST_F(DetectorLevelsTest, AnAlarmTakesThePlaceOfTheSuspicion) {
@@ -170,15 +142,6 @@ TEST_F(DetectorLevelsTest, ASuspicionMayOutlastTheAlarm) {
   EXPECT_FALSE(window().changed);
 }
 
-TEST_F(DetectorLevelsTest, WhatIsCertainRaisesTheAlarmAtOnce) {
-  start();
-  told_->certain = true;
-  window();
-  EXPECT_FALSE(verdict_.alarm);  // certain, but not abnormal
-  EXPECT_TRUE(abnormalWindow().alarm);
-  EXPECT_FALSE(verdict_.suspicion);
-}
-
 TEST_F(DetectorLevelsTest, AStandingAlarmTellsOfNewSuspects) {
   start();
   alarmWindow({suspect("/a", 0), suspect("/b", 1, false)});
@@ -199,20 +162,6 @@ TEST_F(DetectorLevelsTest, AStandingAlarmTellsOfNewSuspects) {
   EXPECT_FALSE(alarmWindow({suspect("/c", 3)}).changed);
   EXPECT_LT(verdict_.suspects[0].since, now_);
   EXPECT_EQ(changes_, 2);
-}
-
-TEST_F(DetectorLevelsTest, ANewAlarmNamesEverybodyAnew) {
-  start();
-  alarmWindow({suspect("/a", 0)});
-  windows(30);
-  EXPECT_FALSE(verdict_.alarm);
-  changes_ = 0;
-  alarmWindow({suspect("/a", 0)});
-  EXPECT_EQ(verdict_.suspects[0].since, now_);
-  EXPECT_EQ(alarmWindow({suspect("/b", 1)}).new_suspects.size(), 1U);
-  detector_->clearAlarm();
-  EXPECT_TRUE(alarmWindow({suspect("/b", 1)}).new_suspects.empty());
-  EXPECT_EQ(verdict_.suspects[0].since, now_);
 }
 
 TEST_F(DetectorLevelsTest, EventTypesWhoseComponentIsNotKnownAreNewOneByOne) {
@@ -236,16 +185,6 @@ TEST_F(DetectorLevelsTest, NewSuspectsMayComeAfterTheBestFive) {
   EXPECT_EQ(verdict_.new_suspects[0].id, 7U);
 }
 
-TEST_F(DetectorLevelsTest, ASuspicionTellsOfNoNewSuspects) {
-  start();
-  told_->suspicious = true;
-  told_->suspects = {suspect("/a", 0)};
-  window();
-  told_->suspects = {suspect("/b", 1)};
-  EXPECT_FALSE(window().changed);
-  EXPECT_TRUE(verdict_.suspicion);
-}
-
 TEST_F(DetectorLevelsTest, UnknownEventsAreToldOnceByDefaultAndThenCounted) {
   start();
   EXPECT_TRUE(window(kUnknownId).suspicion);
@@ -263,11 +202,14 @@ TEST_F(DetectorLevelsTest, UnknownEventsAreToldOnceByDefaultAndThenCounted) {
   EXPECT_TRUE(detector_->unknown().empty());
 }
 
-TEST_F(DetectorLevelsTest, WhoIsNewIsToldWhileASuspicionStands) {
+TEST_F(DetectorLevelsTest, WhoIsNewIsToldWhileASuspicionStandsAndNoOtherSuspect) {
   start();
   told_->suspicious = true;
   told_->suspects = {suspect("/a", 0)};
   window();
+  told_->suspects = {suspect("/b", 1)};
+  EXPECT_FALSE(window().changed);
+  EXPECT_TRUE(verdict_.suspicion);
   told_->suspects = {suspect("/a", 0), suspect("", kUnknownId)};
   EXPECT_TRUE(window(kUnknownId).changed);
   ASSERT_EQ(verdict_.new_suspects.size(), 1U);
@@ -382,27 +324,57 @@ TEST_F(DetectorLevelsTest, ClearingTheAlarmForgetsTheSuspicion) {
   EXPECT_FALSE(window().suspicion);
 }
 
-// What would come in the rest of the window is not known.
-TEST(Detector, TheLastWindowIsJudgedAtTheRecordingsEnd) {
-  class EndsJudge : public ToldJudge {
-   public:
-    explicit EndsJudge(std::vector<std::int64_t>& ends)
-        : ToldJudge(std::make_shared<Judgement>()), ends_(ends) {}
-    Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override {
-      ends_.push_back(end);
-      return ToldJudge::judge(window, end, suspects);
-    }
+class DetectorAcceptTest : public ToldTest {
+ protected:
+  static Acceptances ofUnknown(Kind kind) { return allOf({accepted("/7", "", kind)}); }
+};
 
-   private:
-    std::vector<std::int64_t>& ends_;
-  };
-  std::vector<std::int64_t> ends;
-  Detector detector(std::make_unique<EndsJudge>(ends), kWindow, {}, [](const Verdict&) {});
-  detector.add({10, 0});
-  detector.add({kWindow + 20, 0});
-  detector.advance(2 * kWindow + 30);
-  detector.finish();
-  EXPECT_EQ(ends, (std::vector<std::int64_t>{kWindow, 2 * kWindow, 2 * kWindow + 30}));
+TEST_F(DetectorAcceptTest, WhoIsAcceptedIsNotNewAndToldOnceMoreAfterThatIsTakenBack) {
+  start();
+  EXPECT_TRUE(window(kUnknownId).suspicion);
+  windows(30);
+  EXPECT_FALSE(verdict_.suspicion) << "it was told once";
+  EXPECT_EQ(detector_->unknown().size(), 1U);
+  detector_->accept(ofUnknown(Kind::kStranger));
+  EXPECT_TRUE(detector_->unknown().empty());
+  EXPECT_FALSE(window(kUnknownId).suspicion);
+  EXPECT_TRUE(detector_->unknown().empty());
+  detector_->accept({});
+  EXPECT_TRUE(window(kUnknownId).suspicion) << "told again";
+  windows(30);
+  EXPECT_FALSE(window(kUnknownId).suspicion) << "once";
+}
+
+TEST_F(DetectorAcceptTest, WhatIsAcceptedWhileItsWindowIsOpenIsNoNews) {
+  for (const UnknownEvents unknown : {UnknownEvents::kWarn, UnknownEvents::kError}) {
+    start(unknown);
+    detector_->add({now_, kUnknownId});
+    detector_->accept(ofUnknown(Kind::kStranger));
+    EXPECT_FALSE(window().suspicion);
+    EXPECT_FALSE(verdict_.alarm);
+  }
+}
+
+TEST_F(DetectorAcceptTest, AResumedAlarmDoesNotWaitForWhoMayBeSilent) {
+  Suspect dead = suspect("/7", kUnknownId);
+  dead.reason.kind = Kind::kSilent;
+  for (const bool before : {false, true}) {
+    start();
+    if (before) {
+      detector_->accept(ofUnknown(Kind::kSilent));
+    }
+    detector_->resume({dead});
+    if (!before) {
+      windows(100);
+      EXPECT_TRUE(verdict_.alarm) << "it is not heard";
+      detector_->accept(allOf({accepted("/0", "", Kind::kSilent)}));
+      windows(100);
+      EXPECT_TRUE(verdict_.alarm) << "another one is accepted";
+      detector_->accept(ofUnknown(Kind::kSilent));
+    }
+    windows(40);
+    EXPECT_FALSE(verdict_.alarm) << before;
+  }
 }
 
 }  // namespace

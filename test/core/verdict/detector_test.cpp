@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "core/paper/delay_trainer.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/stream/clock.h"
+#include "self_awareness/core/verdict/persistence.h"
 
 namespace self_awareness::core {
 namespace {
@@ -52,13 +55,8 @@ std::shared_ptr<const paper::Model> trainedModel() {
   return std::make_shared<const paper::Model>(statistics);
 }
 
-struct Seen {
-  std::int64_t start;
-  bool abnormal;
-  bool settling;
-  bool alarm;
-  bool changed;
-  std::vector<Suspect> suspects;
+struct Seen : Verdict {
+  std::int64_t start = 0;  // of the window [ns]
 };
 
 class DetectorTest : public testing::Test {
@@ -67,8 +65,7 @@ class DetectorTest : public testing::Test {
                         const Detector::Parameters& parameters = {}) {
     return Detector(paper::makeJudge(model_, threshold, parameters.silence_is_abnormal),
                     100 * kMillisecond, parameters, [this](const Verdict& verdict) {
-                      seen_.push_back({verdict.window->start, verdict.abnormal, verdict.settling,
-                                       verdict.alarm, verdict.changed, verdict.suspects});
+                      seen_.push_back({verdict, verdict.window->start});
                     });
   }
   static void feed(Detector& detector, const std::vector<Event>& events) {
@@ -138,33 +135,6 @@ TEST_F(DetectorTest, SilenceMayBeIgnored) {
   EXPECT_FALSE(firstAlarm().has_value());
 }
 
-TEST_F(DetectorTest, WithoutAThresholdNothingIsAbnormal) {
-  Detector detector = makeDetector(std::nullopt);
-  feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
-  detector.advance(1020 * kSecond);
-  for (const Seen& seen : seen_) {
-    EXPECT_FALSE(seen.abnormal || seen.alarm);
-  }
-}
-
-TEST_F(DetectorTest, UnknownEventsScoreZeroAndAreNamed) {
-  Detector detector = makeDetector(1.5);
-  feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
-  std::vector<Event> events = clockwork(1010 * kSecond, 1012 * kSecond, true);
-  std::vector<Event> disturbed;
-  for (const Event& event : events) {
-    disturbed.push_back(event);
-    for (int i = 0; i < 5; ++i) {
-      disturbed.push_back({event.stamp, 3});  // the vocabulary ends at 2
-    }
-  }
-  feed(detector, disturbed);
-  ASSERT_TRUE(firstAlarm().has_value());
-  ASSERT_FALSE(seen_.back().suspects.empty());
-  EXPECT_EQ(seen_.back().suspects.front().id, 3U);
-  EXPECT_EQ(seen_.back().suspects.front().reason.kind, Kind::kStranger);
-}
-
 TEST_F(DetectorTest, AStepOfTheClockStartsANewRecordingWithoutAnAlarm) {
   for (const std::int64_t step : {-500 * kSecond, kLongestSilence + kSecond}) {
     seen_.clear();
@@ -178,22 +148,6 @@ TEST_F(DetectorTest, AStepOfTheClockStartsANewRecordingWithoutAnAlarm) {
     EXPECT_LT(seen_.size(), 205U) << step;  // no windows for the time that the step skipped
     EXPECT_TRUE(seen_[120].settling) << step;
   }
-}
-
-// By the paper's judge: the window has one score.
-TEST_F(DetectorTest, ANewComponentHoldsAlarmsOffAndLetsAStandingOneStand) {
-  Detector detector = makeDetector(1.5);
-  std::vector<Event> without_wheels = clockwork(1000 * kSecond, 1010 * kSecond, true);
-  without_wheels.erase(std::remove_if(without_wheels.begin(), without_wheels.end(),
-                                      [](const Event& event) { return event.id == 2; }),
-                       without_wheels.end());
-  feed(detector, without_wheels);
-  feed(detector, clockwork(1010 * kSecond, 1014 * kSecond, false));  // the wheels are new
-  EXPECT_TRUE(seen_.back().settling);
-  EXPECT_FALSE(firstAlarm().has_value());
-  feed(detector, clockwork(1014 * kSecond, 1017 * kSecond, false));
-  ASSERT_TRUE(firstAlarm().has_value());
-  EXPECT_GE(*firstAlarm(), 1015 * kSecond);
 }
 
 TEST_F(DetectorTest, AResumedAlarmStandsUntilItsSuspectIsHeardForLongEnough) {
@@ -261,6 +215,27 @@ TEST_F(DetectorTest, AComponentThatWasHeardMayBeHeardOnANewTopic) {
 TEST_F(DetectorTest, RefusesAThresholdThatIsNoNumber) {
   EXPECT_THROW(makeDetector(std::nan("")), std::invalid_argument);
   EXPECT_THROW(makeDetector(std::numeric_limits<double>::infinity()), std::invalid_argument);
+}
+
+TEST(Persistence, RaisesAtKOfNAndClearsAfterTheHoldTime) {
+  Persistence persistence({3, 5, 200});
+  std::int64_t end = 0;
+  const auto add = [&](bool abnormal) { return persistence.add(abnormal, end += 100); };
+  for (const bool abnormal : {true, false, true, false, false}) {
+    EXPECT_FALSE(add(abnormal));
+  }
+  EXPECT_FALSE(add(true));  // 2 of the last 5
+  EXPECT_FALSE(add(false));
+  EXPECT_FALSE(add(true));
+  EXPECT_TRUE(add(true));  // 3 of 5
+  EXPECT_TRUE(add(false));
+  EXPECT_FALSE(add(false));
+}
+
+TEST(Persistence, RefusesImpossibleValues) {
+  EXPECT_THROW(Persistence({0, 5, 0}), std::invalid_argument);
+  EXPECT_THROW(Persistence({6, 5, 0}), std::invalid_argument);
+  EXPECT_THROW(Persistence({1, 5, -1}), std::invalid_argument);
 }
 
 }  // namespace

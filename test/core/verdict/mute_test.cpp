@@ -195,15 +195,6 @@ TEST_F(MutesTest, WhatIsOverDoesNotEndWhatIsRenewedLater) {
   EXPECT_EQ(ended_[0].alarms, 2U);
 }
 
-TEST_F(MutesTest, ToRenewOneDoesNotTellWhatIsLeftOfAnAlarm) {
-  mutes_.add(mute("", "/scan"));
-  EXPECT_TRUE(stands(alarm({0})));
-  mutes_.add(mute("", "/scan"));
-  std::optional<Alarm> left = alarm({}, 2);
-  left->culprit = "/player";
-  EXPECT_TRUE(stands(left));
-}
-
 TEST_F(MutesTest, SomebodyElseDoesNotShortenIt) {
   Mute of_operator = mute("/player");
   of_operator.by = "/rqt";

@@ -9,17 +9,6 @@
 namespace self_awareness::core {
 namespace {
 
-TEST(Roc, CandidatesAreMidpointsAndInfinities) {
-  const Roc roc({1, 3}, {1, 2});
-  ASSERT_EQ(roc.points().size(), 4U);
-  EXPECT_EQ(roc.points()[0].cutoff, -std::numeric_limits<double>::infinity());
-  EXPECT_EQ(roc.points()[1].cutoff, 1.5);
-  EXPECT_EQ(roc.points()[2].cutoff, 2.5);
-  EXPECT_EQ(roc.points()[3].cutoff, std::numeric_limits<double>::infinity());
-  EXPECT_EQ(roc.points()[2].true_positive_rate, 1);
-  EXPECT_EQ(roc.points()[2].false_positive_rate, 0.5);
-}
-
 TEST(Roc, LevelIsTheLargestCutoffWithSoFewFalsePositives) {
   const Roc roc({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, {});
   EXPECT_EQ(roc.level(0.2).cutoff, 2.5);
@@ -39,13 +28,6 @@ TEST(Roc, NeedsWhatItIsAskedFor) {
   EXPECT_THROW(normal_only.level(-0.1), std::invalid_argument);
   EXPECT_THROW(normal_only.level(std::nan("")), std::invalid_argument);
   EXPECT_TRUE(std::isnan(normal_only.auc()));
-}
-
-TEST(Roc, SeparableScoresHaveAnAreaOfOne) {
-  const Roc roc({5, 6, 7}, {1, 2});
-  EXPECT_EQ(roc.auc(), 1);
-  EXPECT_EQ(roc.youden().cutoff, 3.5);
-  EXPECT_EQ(roc.closest().cutoff, 3.5);
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "self_awareness/core/verdict/dependents.h"
+
 namespace self_awareness::core {
 namespace {
 
@@ -53,6 +55,19 @@ TEST(SourceGraph, UpstreamIsWhoseMessagesReachAnotherInFewerStepsThanTheOtherWay
           << names[from] << " " << names[to];
     }
   }
+}
+
+using Names = std::set<std::string>;
+
+TEST(DependentsOf, WhoIsReachedByMessagesNeedsThem) {
+  SourceGraph graph;
+  graph.connect("/a", "/x", "/b");
+  graph.connect("/b", "/y", "/c");
+  graph.connect("/c", "/z", "/b");
+  graph.connect("/b", "/rosout", "/d");
+  EXPECT_EQ(dependentsOf(graph, "/b"), (Names{"/b", "/c"})) << "a loop leads back";
+  EXPECT_EQ(dependentsOf(graph, "/a"), (Names{"/b", "/c"})) << "nobody needs a log";
+  EXPECT_EQ(dependentsOf(graph, "/d"), Names{});
 }
 
 }  // namespace

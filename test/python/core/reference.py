@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, List, Sequence, Tuple
 
 Event = Tuple[int, str]
 Pair = Tuple[str, str]
@@ -63,18 +63,6 @@ class Reference:
                 self.weight(i, j, sorted(last)) * self.probability(i, j, t - t_i)
                 for i, t_i in last.items()) if j in self.types else 0.0)
         return scores
-
-    def windows(self, events: Sequence[Event],
-                length: int) -> List[Tuple[int, int, int, Optional[float]]]:
-        """Start, events, unknown events and score (eq. 2) of the windows, silent ones included."""
-        scores = self.event_scores(events)
-        windows = []
-        for k in range(events[0][0] // length, events[-1][0] // length + 1):
-            inside = [n for n, (t, _) in enumerate(events) if k * length <= t < (k + 1) * length]
-            unknown = sum(events[n][1] not in self.types for n in inside)
-            score = math.fsum(scores[n] for n in inside) / len(inside) if inside else None
-            windows.append((k * length, len(inside), unknown, score))
-        return windows
 
 
 def auc(normal: Sequence[float], abnormal: Sequence[float]) -> float:

@@ -6,8 +6,9 @@ event type is a letter, a mode of the robot a small one, a track a triple (chann
 from __future__ import annotations
 
 import math
-from collections import defaultdict
-from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple
+from collections import Counter, defaultdict
+from functools import lru_cache
+from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
 Event = Tuple[int, str]
 Pair = Tuple[str, str]
@@ -114,16 +115,6 @@ def log_probabilities(bins: Sequence[int]) -> List[float]:
     return [math.log((bins.count(index) + 1) / (len(bins) + BINS)) for index in range(BINS)]
 
 
-class Seen(NamedTuple):
-    """What one recording showed."""
-
-    start: int
-    end: int
-    longest_silence: int
-    longest_stall: int
-    events: Dict[str, int]
-
-
 def stalls_of(pieces: Sequence[Sequence[Event]]) -> List[Dict[int, int]]:
     """Return how long the machine stood still [ns] before events, by their place.
 
@@ -156,24 +147,25 @@ class Counts:
         stalls: of the recordings, as stalls_of() returns them; None: what it returns.
     """
 
-    def __init__(self, recordings: Iterable[Sequence[Event]], types: Sequence[str],
-                 window: int, stalls: Optional[Sequence[Dict[int, int]]] = None) -> None:
+    def __init__(self, recordings: Iterable[Sequence[Event]], types: Sequence[str], window: int,
+                 stalls: Optional[Sequence[Dict[int, int]]] = None) -> None:
         self.types = types
         self.gaps: Dict[str, List[int]] = defaultdict(list)
         self.delays: Dict[Pair, List[int]] = defaultdict(list)
         self.answers: Dict[Pair, int] = defaultdict(int)
         self.rates: Dict[str, List[int]] = defaultdict(list)
-        self.recordings: List[Seen] = []
+        self.longest_silence = self.longest_stall = 0  # [ns]
         for place, events in enumerate(recordings):
             stood_still = stalls_of([events])[0] if stalls is None else stalls[place]
             ran = [(t - sum(length for before, length in stood_still.items() if before <= n), kind)
                    for n, (t, kind) in enumerate(events)]
+            self.longest_silence = max(self.longest_silence, longest_gap([t for t, _ in ran]))
+            self.longest_stall = max(self.longest_stall, *stood_still.values(), 0)
             ticking = with_ticks(ran)
             self._count_delays(ticking)
             self._count_answers(ticking)
             self._count_rates(ran, window, {n: (ran[n - 1][0], length)
                                             for n, length in stood_still.items()})
-            self._count_recording(events, ran, ticking, stood_still)
 
     def _count_delays(self, events: Sequence[Event]) -> None:
         last: Dict[str, int] = {}
@@ -207,24 +199,18 @@ class Counts:
             for kind in self.types:
                 self.rates[kind].append(inside.count(kind))
 
-    def _count_recording(self, events: Sequence[Event], ran: Sequence[Event],
-                         ticking: Sequence[Event], stalls: Dict[int, int]) -> None:
-        stamps = [t for t, _ in events]
-        of_kind = {kind: [t for t, other in ticking if other == kind] for kind in self.types}
-        self.recordings.append(Seen(
-            stamps[0], max(stamps), longest_gap([t for t, _ in ran]),
-            max(stalls.values(), default=0),
-            {kind: len(own) for kind, own in of_kind.items()}))
-
+    @lru_cache(maxsize=None)
     def miss_rate(self, asking: str, answer: str) -> float:
         """Return the share of the gaps of `asking` without the other."""
         gaps = len(self.gaps[asking])
         return (gaps - self.answers[asking, answer] + 0.5) / (gaps + 1)
 
+    @lru_cache(maxsize=None)
     def mean_gap(self, kind: str) -> float:
         """Return the mean gap [ns]; 0 if there is none."""
         return sum(self.gaps[kind]) / max(len(self.gaps[kind]), 1)
 
+    @lru_cache(maxsize=None)
     def usual_delay(self, e_i: str, e_j: str, share: float) -> float:
         """Return the delay [s] that this share of the delays did not exceed."""
         bins = self.delays[e_i, e_j]
@@ -269,9 +255,7 @@ class ReferenceModel:
         self._halves = (first, second)
         self._least_effect = least_effect
         self.longest = {kind: max(both.gaps[kind], default=0) for kind in self.types}
-        self.longest_silence = max(seen.longest_silence for seen in both.recordings)
-        self.longest_stall = max(seen.longest_stall for seen in both.recordings)
-        self._gaps = {kind: self._binned(both.gaps[kind]) for kind in self.types}
+        self._gaps = {kind: Counter(self._binned(both.gaps[kind])) for kind in self.types}
         self._surprises = {track: self._standardised(track[2], track[1])
                            for track in tracks if track[0] == 'pairs'}
         self._steps = {track: self._steps_of(track) for track in tracks
@@ -301,6 +285,7 @@ class ReferenceModel:
         return [min(surprise, 0.0) if index in harmless else surprise
                 for index, surprise in enumerate(surprises)]
 
+    @lru_cache(maxsize=None)
     def _harmless(self, e_i: str, e_j: str) -> Tuple[float, float]:
         """Return the shortest and the longest delay that differ by little from the usual ones."""
         bins = self.both.delays[e_i, e_j]
@@ -320,11 +305,9 @@ class ReferenceModel:
         if not gaps:
             return 0.0
         longest = max(self.both.gaps[kind])
-        left = math.fsum(gap - age for gap in gaps if gap > age)
-        if left == 0.0:  # the same, but the exponential would underflow
-            return math.log(math.fsum(gaps) + longest) - math.log(longest) + age / longest
+        left = math.fsum(number * (gap - age) for gap, number in gaps.items() if gap > age)
         return -math.log((left + longest * math.exp(-age / longest))
-                         / (math.fsum(gaps) + longest))
+                         / (math.fsum(gaps.elements()) + longest))
 
     def _steps_of(self, track: Track) -> List[float]:
         """Return what a gap of every bin adds to the sum of another pace [nat]."""
@@ -365,6 +348,7 @@ class ReferenceModel:
         harmless = any(shortest <= delay + shift <= longest for shift in shifts)
         return 0.0 if surprise > 0.5 and harmless else surprise
 
+    @lru_cache(maxsize=None)
     def counts_requests(self, track: Track) -> bool:
         """Return whether a deadline counts requests, not seconds."""
         _, to, other = track

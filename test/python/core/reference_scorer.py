@@ -105,8 +105,8 @@ class ReferenceScorer:
         self._told: List[Tuple[int, str]] = []  # modes
         self._watches = {track: Watch(self._caps.get(track, MOST_EVIDENCE))
                          for track in model.tracks if LABELS[track[0]] in ('pairs', 'pace')}
-        self._usual_silence = max(model.longest_silence * 5 // 4, SHORTEST_STALL)
-        self._longest_stall = max(LONGEST_STALL, min(model.longest_stall * 5 // 4,
+        self._usual_silence = max(model.both.longest_silence * 5 // 4, SHORTEST_STALL)
+        self._longest_stall = max(LONGEST_STALL, min(model.both.longest_stall * 5 // 4,
                                                      LONGEST_STALL_OF_TRAINING))
         self._start: Optional[int] = None  # the first event
         self._newest: Optional[int] = None

@@ -1,14 +1,14 @@
-"""Attributes of messages on their way from bags to alarms (docs/attributes.md)."""
+"""Attributes of messages on their way from bags to alarms (docs/method.md, section 3.10)."""
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, Callable, Dict
+from typing import Callable, Dict
 
 import numpy as np
 import pytest
 import rosbag
 import rospy
-from conftest import train_tuned
+from conftest import put, train_tuned
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import Header
 
@@ -59,15 +59,9 @@ def record(path: Path, begin: float, seed: int,
                 change(cloud, last)
             else:
                 last = cloud
-            _write(bag, '/lidar', '/points', cloud, now)
-            _write(bag, '/slam', '/map_used', Header(number, cloud.header.stamp, 'm'), now + 0.03)
+            put(bag, '/lidar', '/points', cloud, now)
+            put(bag, '/slam', '/map_used', Header(number, cloud.header.stamp, 'm'), now + 0.03)
     return str(path)
-
-
-def _write(bag: rosbag.Bag, source: str, topic: str, message: Any, stamp: float) -> None:
-    bag.write(topic, message, rospy.Time.from_sec(stamp), connection_header={
-        'topic': topic, 'type': message._type, 'md5sum': message._md5sum,
-        'message_definition': message._full_text, 'callerid': source})
 
 
 @pytest.fixture(scope='module')

@@ -8,14 +8,15 @@ import pytest
 
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation import evaluate, row_files
-from self_awareness_evaluation.recordings import outages
+from self_awareness_evaluation import evaluate, outages, row_files
 from self_awareness_evaluation.experiment import Unit
-from self_awareness_evaluation.recordings.outages import Case, JudgedCase, Span
+from self_awareness_evaluation.outages import Case, JudgedCase, Span
 from self_awareness_evaluation.records import NORMAL, REAL
 from self_awareness_evaluation.rows import HOUR_S, Row
 from self_awareness_evaluation.systems import SystemAlarm
 from self_awareness_evaluation.variants import Variant
+
+FIRST = 1_600_000_000 * SECOND_NS
 
 
 def rows_of(alarms: List[Span], monkeypatch: pytest.MonkeyPatch) -> List[Row]:
@@ -23,12 +24,12 @@ def rows_of(alarms: List[Span], monkeypatch: pytest.MonkeyPatch) -> List[Row]:
     normal = BagPart('a.bag')
     cases = (Case('faulty', normal, normal, 'a.bag', (50.0, 60.0), ((10.0, 50.0), (70.0, 1e9))),
              Case('healthy', normal, normal, 'a.bag', None, ((0.0, 1e9),)))
-    raised = [SystemAlarm(round(start * SECOND_NS), round(end * SECOND_NS), True, [], culprit='/a')
-              for start, end in alarms]
+    raised = [SystemAlarm(FIRST + round(start * SECOND_NS), FIRST + round(end * SECOND_NS), True,
+                          [], culprit='/a') for start, end in alarms]
     monkeypatch.setattr(outages, 'SYSTEMS',
-                        {'oracle': lambda *_: JudgedCase(raised, [], 100.0, 3)})
+                        {'oracle': lambda *_: JudgedCase(raised, [], FIRST, 100.0, 3)})
     unit = Unit(lambda _: [], REAL, 'a case', (Variant('oracle'),))
-    return [row for case in cases for row in outages.rows(unit, case, Path())]
+    return [row for case in cases for row in outages.rows(case, Path(), unit)]
 
 
 def test_an_alarm_in_the_outage_finds_it(monkeypatch: pytest.MonkeyPatch) -> None:

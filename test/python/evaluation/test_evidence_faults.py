@@ -1,19 +1,17 @@
 """Which faults of the simulated robot the detectors see: `evidence` all of them, `paper` few."""
 from __future__ import annotations
 
-from typing import Callable, Dict, Optional, Tuple
+from typing import Optional, Tuple
 
 import numpy as np
 import pytest
 
-from self_awareness import DEFAULT_WINDOW, DetectorParameters, UnknownEvents
+from self_awareness import DEFAULT_WINDOW, DetectorParameters
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.detectors import Evidence, Paper, scenario_graph
-from self_awareness_evaluation.records import FaultRecord
 from self_awareness_evaluation.rows import first_alarm
-from self_awareness_evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
-                                                         TRAINING_NAMES, WITHIN_S,
-                                                         fault_record, normal_record)
+from self_awareness_evaluation.simulated import (CALIBRATION_NAME, RECORD_S, TRAINING_NAMES,
+                                                 WITHIN_S, fault_record, normal_record)
 from self_awareness_evaluation.systems import Judged
 from self_awareness_follow_me.scenario import load_scenario
 
@@ -25,10 +23,9 @@ SEES, LATE, BLIND, VARIES = 'sees', 'late', 'blind', 'varies'
 it at all; one or the other, depending on the seed: nothing is asserted then."""
 
 Systems = Tuple[Evidence, Paper]
-Record = Callable[[str], FaultRecord]
 
 
-@pytest.fixture(name='systems', scope='session')
+@pytest.fixture(name='systems', scope='module')
 def _systems() -> Systems:
     scenario = load_scenario()
     training = [normal_record(scenario, SEED, name, RECORD_S)
@@ -40,19 +37,6 @@ def _systems() -> Systems:
     paper.train(training)
     paper.calibrate(calibration)
     return evidence, paper
-
-
-@pytest.fixture(name='record_of', scope='session')
-def _record_of() -> Record:
-    scenario = load_scenario()
-    records: Dict[str, FaultRecord] = {}
-
-    def record_of(kind: str) -> FaultRecord:
-        if kind not in records:
-            records[kind] = fault_record(scenario, SEED, kind)
-        return records[kind]
-
-    return record_of
 
 
 def latency(judged: Judged, onset: int) -> Optional[float]:
@@ -76,9 +60,9 @@ def latency(judged: Judged, onset: int) -> Optional[float]:
     ('stale:slam', 1.7, BLIND),
     ('empty:player', 5.0, BLIND),
 ])
-def test_evidence_raises_the_alarm(systems: Systems, record_of: Record, kind: str,
-                                   within_s: float, paper: str) -> None:
-    record = record_of(kind)
+def test_evidence_raises_the_alarm(systems: Systems, kind: str, within_s: float,
+                                   paper: str) -> None:
+    record = fault_record(load_scenario(), SEED, kind)
     evidence, paper_system = systems
     by_evidence = evidence.judge(record.recording)
     by_paper = paper_system.judge(record.recording)
@@ -94,9 +78,9 @@ def test_evidence_raises_the_alarm(systems: Systems, record_of: Record, kind: st
         assert of_paper is None
 
 
-def test_who_does_not_subscribe_is_suspected(systems: Systems, record_of: Record) -> None:
+def test_who_does_not_subscribe_is_suspected(systems: Systems) -> None:
     kind = 'unsubscribed:navigation'
-    record = record_of(kind)
+    record = fault_record(load_scenario(), SEED, kind)
     judged = systems[0].judge(record.recording)
     assert judged.alarms == []
     suspicion, = judged.suspicions
@@ -108,11 +92,10 @@ def test_who_does_not_subscribe_is_suspected(systems: Systems, record_of: Record
     ('extra', 0.5, VARIES),  # another publisher, of what was never seen from it
     ('unknown', 1.5, BLIND),  # a value that was never seen
 ])
-def test_what_was_never_seen_is_at_least_a_suspicion(systems: Systems, record_of: Record,
-                                                     kind: str, within_s: float,
+def test_what_was_never_seen_is_at_least_a_suspicion(systems: Systems, kind: str, within_s: float,
                                                      paper: str) -> None:
     evidence, by_paper = systems
-    record = record_of(kind)
+    record = fault_record(load_scenario(), SEED, kind)
     verdicts = evidence.verdicts(record.recording, DetectorParameters())
     after = (verdicts.start + DEFAULT_WINDOW - record.onset) / SECOND_NS
     assert not verdicts.suspicion[after <= 0.0].any()
@@ -121,24 +104,3 @@ def test_what_was_never_seen_is_at_least_a_suspicion(systems: Systems, record_of
     assert verdicts.suspicion[np.flatnonzero(verdicts.unknown)[0]]
     if paper == BLIND:
         assert latency(by_paper.judge(record.recording), record.onset) is None
-
-
-@pytest.mark.parametrize('kind', ['extra', 'unknown'])
-def test_what_was_never_seen_is_an_alarm_at_once_where_it_is_an_error(systems: Systems,
-                                                                      record_of: Record,
-                                                                      kind: str) -> None:
-    parameters = DetectorParameters()
-    parameters.unknown = UnknownEvents.ERROR
-    verdicts = systems[0].verdicts(record_of(kind).recording, parameters)
-    first = int(verdicts.start[np.flatnonzero(verdicts.unknown)[0]])
-    assert verdicts.alarms[0].begin == first + DEFAULT_WINDOW
-    assert 'unknown events' in verdicts.alarms[0].evidence
-
-
-def test_what_was_never_seen_may_be_ignored(systems: Systems, record_of: Record) -> None:
-    parameters = DetectorParameters()
-    parameters.unknown = UnknownEvents.IGNORE
-    verdicts = systems[0].verdicts(record_of('extra').recording, parameters)
-    assert verdicts.unknown.any()
-    assert not verdicts.suspicion[np.flatnonzero(verdicts.unknown)[0]]
-    assert verdicts.alarms == []

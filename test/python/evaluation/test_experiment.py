@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
-from typing import Any, List, Set, Tuple
+from typing import List, Set, Tuple
 
 import pytest
 
@@ -15,7 +16,6 @@ from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.families.protocol import Records
 from self_awareness_evaluation.kept_rows import KeptRows
 from self_awareness_evaluation.records import FAMILIES, NORMAL, FaultRecord, Learning, Robot
-from self_awareness_evaluation.robots import Amount
 from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.variants import (CHANNEL, NUMBER, RULE, Variant, one_by_one,
                                                 side_by_side)
@@ -76,14 +76,14 @@ def small(seconds: float = 60.0) -> Robot:
                  lambda: [robot(60.0, 5)], lambda: [crash])
 
 
-def unit(*variants: Variant, of: Any = small) -> Unit:
-    return Unit(lambda unit: experiment.measure(unit, of()), FAMILIES, 'small 1',
+def unit(*variants: Variant) -> Unit:
+    return Unit(lambda unit: experiment.measure(small, unit), FAMILIES, 'small 1',
                 variants or (AS_IT_IS,))
 
 
 def test_a_variant_is_measured_on_every_record() -> None:
     blind = replace(AS_IT_IS, change='without overdue')
-    normal, _, crash, unseen = experiment.measure(unit(AS_IT_IS, blind), small())
+    normal, _, crash, unseen = experiment.measure(small, unit(AS_IT_IS, blind))
     assert (normal.subject.robot, normal.subject.learning, normal.fault) == (
         'small 1', '2 x 60 s + 1 x 60 s', NORMAL)
     assert normal.hours == pytest.approx(55.0 / 3600.0, rel=0.01)
@@ -97,7 +97,7 @@ def test_a_variant_is_measured_on_every_record() -> None:
 
 
 def test_where_no_limits_can_be_found_nothing_is_judged() -> None:
-    rows = list(experiment.measure(unit(), small(8.0)))
+    rows = list(experiment.measure(partial(small, 8.0), unit()))
     assert len(rows) == 2 and all(row.refused and row.latency_s is None for row in rows)
 
 
@@ -116,9 +116,9 @@ def test_the_detector_gets_the_graph_of_the_robot_and_the_budget(
     monkeypatch.setattr(frame, 'Evidence', Told)
     judges = side_by_side(('evidence', 'evidence_no_graph', 'gaps'), [TWO], budgets=(0.5, 5.0))
     assert [variant.faults for variant in judges] == [True, False, True, False, True]
-    of_family = robots.of_family('events_only', 1, Amount(0.1, ('crash',), most=1))
-    rows = list(experiment.measure(Unit(lambda _: [], FAMILIES, 'events_only 1', tuple(judges)),
-                                   of_family))
+    of_family = partial(robots.of_family, 'events_only', 1, 0.1, ('crash',), 1)
+    rows = list(experiment.measure(
+        of_family, Unit(lambda _: [], FAMILIES, 'events_only 1', tuple(judges))))
     graph = Records('events_only', 1).robot.graph
     assert made == [(graph, 0.5), (graph, 5.0), (set(), 0.5), (set(), 5.0)]
     assert [(row.subject.system, row.subject.budget, row.fault) for row in rows] == [

@@ -9,12 +9,10 @@ import pytest
 import rosgraph
 import rosnode
 
-from self_awareness_evaluation import evaluate
-from self_awareness_evaluation.live import usage
 from self_awareness_evaluation.live.master import unregister
 from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
                                                       free_port)
-from self_awareness_evaluation.live.rows import Row
+from self_awareness_evaluation.live.session import used
 
 STARTED_WITHIN_S = 60.0
 
@@ -30,18 +28,12 @@ def test_processes_are_ended_and_failures_are_told(tmp_path: Path) -> None:
     with pytest.raises(LiveError, match='not within 0 s: a wonder'):
         await_condition('a wonder', lambda: False, 0.0)
     with pytest.raises(LiveError, match=f'process {asleep.pid} has ended'):
-        usage.look(asleep.pid)
+        used(asleep.pid)
 
 
 def test_what_a_process_uses() -> None:
-    before = usage.look(os.getpid())
-    worked = [number for number in range(3_000_000) if number % 2]
-    after = usage.look(os.getpid())
-    assert len(worked) == 1_500_000
-    row = usage.added(Row('', ''), before, after)
-    assert row.cpu is not None and 0.2 < row.cpu < 20.0
-    assert row.memory_mb is not None and 5.0 < row.memory_mb < 1e4
-    assert row.threads == after.threads >= 1 and row.files == after.files >= 3
+    found = used(os.getpid())
+    assert 5.0 < found['memory_mb'] < 1e4 and found['threads'] >= 1 and found['files'] >= 3
 
 
 def nodes() -> Set[str]:
@@ -69,11 +61,3 @@ def test_who_ended_without_unregistering_is_unknown_to_the_master(
         assert nodes() == {'/camera', '/lidar_driver'}
     with pytest.raises(LiveError, match='the master does not answer any more'):
         unregister(['/camera'])
-
-
-def test_recording_of_a_session_is_not_overwritten(tmp_path: Path,
-                                                   capsys: pytest.CaptureFixture) -> None:
-    (tmp_path / 'session_1.bag').write_text('precious')
-    assert evaluate.main(['live', '-o', str(tmp_path), '--recordings', str(tmp_path)]) == 1
-    assert 'name another folder' in capsys.readouterr().err
-    assert (tmp_path / 'session_1.bag').read_text() == 'precious'

@@ -8,9 +8,9 @@ from typing import List
 import pytest
 
 from self_awareness import METHOD
-from self_awareness_evaluation import evaluate, pages, readme_numbers
-from self_awareness_evaluation.readme_numbers import NUMBERS, SECTION, Number, cell, section
-from self_awareness_evaluation.sections.page import RESEARCH, RESULTS
+from self_awareness_evaluation import evaluate, pages
+from self_awareness_evaluation.pages import RESEARCH, RESULTS
+from self_awareness_evaluation.readme_numbers import PAGE, SECTION, Number, cell, section
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / 'docs'
@@ -45,19 +45,18 @@ def test_the_readme_has_no_other_number_that_could_be_measured() -> None:
     ({'heading': 'Gone'}, "no heading 'Gone'"), ({'column': 'x'}, "no column 'x'"),
     ({'row': 'x'}, "no row 'x'")])
 def test_a_cell_that_is_not_there_is_named(change: 'dict[str, str]', error: str) -> None:
-    values = {'what': 'it', 'page': 'p.md', 'heading': 'Table', 'row': 'b', 'column': 'two'}
+    values = {'what': 'it', 'heading': 'Table', 'row': 'b', 'column': 'two'}
     page = ('# Page\n\n| | one | two |\n|---|---|---|\n\n'
             '## Table\n\n| | two |\n|---|---|\n| b | 7 |\n')
     assert cell(page, Number(**values)) == '7'
-    with pytest.raises(ValueError, match=f'p.md: {error}'):
+    with pytest.raises(ValueError, match=f'{PAGE}: {error}'):
         cell(page, Number(**{**values, **change}))
 
 
 def test_a_number_that_changes_on_its_page_changes_in_the_readme(tmp_path: Path) -> None:
-    for page in {number.page for number in NUMBERS}:
-        (tmp_path / page).parent.mkdir(exist_ok=True)
-        text = (DOCS / page).read_text(encoding='utf-8')
-        (tmp_path / page).write_text(text.replace('| silence | 100 %', '| silence | 12 %'))
+    (tmp_path / PAGE).parent.mkdir()
+    (tmp_path / PAGE).write_text((DOCS / PAGE).read_text(encoding='utf-8').replace(
+        '| silence | 100 %', '| silence | 12 %'))
     readme = tmp_path / 'README.md'
     readme.write_text(f'before\n<!-- {SECTION} -->\nold\n<!-- /{SECTION} -->\nafter\n')
     assert evaluate.main(['numbers', '--docs', str(tmp_path), '--readme', str(readme)]) == 0
@@ -92,11 +91,9 @@ def test_every_part_of_the_evaluation_says_what_wrote_it() -> None:
         'simulated', 'families', 'recordings', 'ablation')} <= set(found)
     assert {(f'evaluation/{RESULTS}', part) for part in (
         'simulated', 'families', 'recordings')} <= set(found)
-    assert {number.page for number in readme_numbers.NUMBERS} <= {page for page, _ in found}
 
 
 def test_the_numbers_of_the_readme_are_of_this_method() -> None:
     """They come from two of the parts of their page."""
-    of_readme = {number.page for number in NUMBERS}
-    old = [each.command for each in pages.find(DOCS) if each.page in of_readme and each.is_old]
+    old = [each.command for each in pages.find(DOCS) if each.page == PAGE and each.is_old]
     assert [command for command in old if command.split()[3] in ('simulated', 'families')] == []

@@ -8,22 +8,10 @@ from evaluation_robot import START, robot
 from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import catalogue
-from self_awareness_evaluation.peers.frequency import (SPAN, FrequencyMonitor,
-                                                       LearnedFrequencyMonitor, messages_in_span)
-from self_awareness_evaluation.peers.gaps import GapBounds, GapMonitor
-from self_awareness_evaluation.systems import ScoringSystem, System
+from self_awareness_evaluation.peers import (SPAN, FrequencyMonitor, GapBounds, GapMonitor,
+                                             LearnedFrequencyMonitor, messages_in_span)
 from self_awareness_evaluation.variants import Variant
 from self_awareness_evaluation.windowed_events import WindowedEvents
-
-CRASH_S = 30.0
-
-
-def trained(name: str) -> System:
-    """Return a system that knows the small robot."""
-    system = Variant(name).make(set())
-    system.train([robot(100.0, 1), robot(100.0, 2)])
-    system.calibrate([robot(200.0, 3)])
-    return system
 
 
 def steady(seconds: float, rate: float) -> WindowedEvents:
@@ -35,22 +23,16 @@ def steady(seconds: float, rate: float) -> WindowedEvents:
 
 
 @pytest.mark.parametrize('name', catalogue.NAMES)
-def test_the_crash_of_the_only_fast_topic_is_seen(name: str) -> None:
-    system = trained(name)
-    judged = system.judge(robot(60.0, 4, silent=((CRASH_S, 60.0),)))
-    onset = START + round(CRASH_S * SECOND_NS)
-    latencies = [(alarm.start - onset) / SECOND_NS for alarm in judged.alarms]
-    assert len(latencies) == 1
-    assert 0.0 < latencies[0] < 2.0
-    assert judged.alarms[0].suspects is None or judged.alarms[0].suspects[0] == '/player'
-    assert not judged.alarms[0].cleared
-
-
-@pytest.mark.parametrize('name', catalogue.NAMES)
-def test_normal_operation_raises_no_alarm(name: str) -> None:
-    judged = trained(name).judge(robot(100.0, 5))
-    assert np.isfinite(judged.score).all()
-    assert judged.alarms == []
+def test_the_crash_of_the_only_fast_topic_is_seen_and_normal_operation_is_quiet(name: str) -> None:
+    system = Variant(name).make(set())
+    system.train([robot(100.0, 1), robot(100.0, 2)])
+    system.calibrate([robot(200.0, 3)])
+    alarm, = system.judge(robot(60.0, 4, silent=((30.0, 60.0),))).alarms
+    assert 0.0 < (alarm.start - START) / SECOND_NS - 30.0 < 2.0
+    assert alarm.suspects is not None and alarm.suspects[0] == '/player'
+    assert not alarm.cleared
+    judged = system.judge(robot(100.0, 5))
+    assert np.isfinite(judged.score).all() and judged.alarms == []
     assert (judged.abnormal & ~judged.settling).mean() < 0.05
 
 
@@ -69,10 +51,8 @@ def test_frequency_monitor_has_the_limits_of_frequency_status() -> None:
     assert monitor.scores(steady(30.0, 9.0))[-1] == pytest.approx(-0.1)
     assert monitor.scores(steady(30.0, 8.8))[-1] == pytest.approx(-0.12)
     assert monitor.scores(steady(30.0, 12.0))[-1] == pytest.approx(-0.2)
-    system = catalogue.make('frequency')
-    system.train([steady(30.0, 10.0)])
     for rate, abnormal in ((10.0, False), (9.4, False), (8.8, True), (10.8, False), (11.4, True)):
-        assert system.judge(steady(30.0, rate)).abnormal[-1] == abnormal
+        assert monitor.judge(steady(30.0, rate)).abnormal[-1] == abnormal
 
 
 def test_frequency_monitor_leaves_out_topics_too_slow_for_its_tolerance() -> None:
@@ -103,9 +83,9 @@ def test_irregular_topics_have_no_frequency() -> None:
 
 
 def test_a_system_that_was_not_calibrated_says_so() -> None:
-    system = ScoringSystem('mine', LearnedFrequencyMonitor())
+    system = LearnedFrequencyMonitor()
     system.train([robot(30.0, 1)])
-    with pytest.raises(ValueError, match='mine: calibrate first'):
+    with pytest.raises(ValueError, match='frequency_learned: calibrate first'):
         system.judge(robot(30.0, 2))
 
 
@@ -140,11 +120,3 @@ def test_the_gap_monitor_learns_from_the_calibration_too() -> None:
     monitor.calibrate([slow])
     assert not monitor.judge(slow).abnormal.any()
     assert not monitor.judge(steady(30.0, 10.0)).abnormal.any()
-
-
-def test_the_gap_monitor_blames_who_is_silent() -> None:
-    monitor = GapMonitor()
-    monitor.train([robot(60.0, 1)])
-    judged = monitor.judge(robot(60.0, 2, silent=((30.0, 60.0),)))
-    assert [alarm.suspects for alarm in judged.alarms] == [['/player']]
-    assert 0.1 <= (judged.alarms[0].start - START) / SECOND_NS - 30.0 <= 0.5

@@ -90,6 +90,14 @@ def test_a_fault() -> None:
     assert found.latency_s is not None and found.first is None
 
 
+def test_a_suspicion_is_told_too() -> None:
+    found = judged([], [72])
+    of_fault = fault_row(SUBJECT, fault_at(69), found)
+    assert (of_fault.latency_s, of_fault.noticed_s) == (None, pytest.approx(0.3))
+    # One that stands at the onset is no finding.
+    assert fault_row(SUBJECT, replace(fault_at(72), onset=at(72)), found).noticed_s is None
+
+
 def test_what_is_said_when_the_fault_ends() -> None:
     suspected = SystemAlarm(at(72), at(74), True, ['/b'], '', SUSPICION, '/b', 'late')
     stands = SystemAlarm(at(74), at(99), False, ['/b', '/a'], '', culprit='/a', kind='silent',
@@ -143,14 +151,6 @@ def test_a_false_alarm_that_stands_at_the_onset_is_told() -> None:
         assert fault_row(SUBJECT, fault_at(70), judged([alarm])).stood_before == stood
 
 
-def test_a_suspicion_is_told_too() -> None:
-    found = judged([], [72], [SystemAlarm(at(72), at(73), True, ['/slam'], '', SUSPICION)])
-    of_fault = fault_row(SUBJECT, fault_at(69), found)
-    assert (of_fault.latency_s, of_fault.noticed_s) == (None, pytest.approx(0.3))
-    # One that stands at the onset is no finding.
-    assert fault_row(SUBJECT, replace(fault_at(72), onset=at(72)), found).noticed_s is None
-
-
 def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:
     path = tmp_path / 'rows.csv'
     rows = [row(alarms=2, evidence=('a', 'b'), expected=0.25),
@@ -158,12 +158,12 @@ def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:
             row(refused='too short, or so')]
     row_files.save(path, rows, Row)
     assert row_files.load(path, Row) == rows
-    path.write_text('part,robot\na,b\n', encoding='utf-8')
-    with pytest.raises(ValueError, match='rows.csv, line 2: there is no learning'):
-        row_files.load(path, Row)
-    path.write_text('part,robot,learning,system,fault,alarms\na,b,c,d,e,many\n', encoding='utf-8')
-    with pytest.raises(ValueError, match="rows.csv, line 2: alarms is 'many', no number"):
-        row_files.load(path, Row)
+    for text, why in (('part,robot\na,b\n', 'there is no learning'),
+                      ('part,robot,learning,system,fault,alarms\na,b,c,d,e,many\n',
+                       "alarms is 'many', no number")):
+        path.write_text(text, encoding='utf-8')
+        with pytest.raises(ValueError, match=f'rows.csv, line 2: {why}'):
+            row_files.load(path, Row)
 
 
 def test_figures_of_normal_operation() -> None:
@@ -202,8 +202,4 @@ def test_figures_of_faults() -> None:
         4.0, (1, 2), (2, 2), (1, 2), (2, 1))
     none = Found.of([])
     assert none.records == 0 and math.isnan(none.share()) and math.isnan(none.median_s)
-
-
-def test_what_was_not_found_took_for_ever() -> None:
-    assert quantile([3.0, 1.0, None, 2.0], 0.5) == 2.0
-    assert quantile([1.0, None, None], 0.5) == math.inf
+    assert quantile([1.0, None, None], 0.5) == math.inf, 'what was not found took for ever'

@@ -11,10 +11,11 @@ from self_awareness import Tuning
 from self_awareness_evaluation import pages, tunings
 from self_awareness_evaluation.families.robot import CRASH, LATE, RESTART
 from self_awareness_evaluation.figures import rate_interval
+from self_awareness_evaluation.pages import RESEARCH, RESULTS
 from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, REAL
 from self_awareness_evaluation.rows import Row, Subject
-from self_awareness_evaluation.sections import ablation, families, own_robot, page, recordings
-from self_awareness_evaluation.sections.page import RESEARCH, RESULTS
+from self_awareness_evaluation.sections import ablation, families, own_robot, recordings
+from self_awareness_evaluation.tables import cells
 from self_awareness_evaluation.variants import CHANNEL, NUMBER, RULE, Variant
 
 LEARNING = '2 x 150 s + 1 x 150 s'
@@ -46,7 +47,7 @@ def test_the_own_robot() -> None:
                  '| cc1 | 50 % / 100 % / 100 % | – / – / – |',
                  '| extra | 5 s | 100 %, 0.10 s | 0 %, – |'):
         assert line in research, line
-    assert '| all nodes fall silent | 100 % | 21 to 100 % | 2.00 s | – | 0 % |' in results
+    assert '| all nodes fall silent | 100 % (21–100 %) | 2.00 s | – / 0 % |' in results
     assert results[-1] == 'False alarms an hour: 0 (0 to 1.9).'
 
 
@@ -70,7 +71,7 @@ def test_the_families() -> None:
     assert any(line.startswith('| gaps | 2 starts | – | 0.5 (') for line in research)
     results = section.pages[RESULTS]
     assert f'| false alarms an hour (95 %) | {told} | – |' in results
-    assert '| crashes | 66.7 % (21 to 94 %), 4.00 s | 50 % / 100 % |' in results
+    assert '| crashes | 66.7 % (21–94 %), 4.00 s | 50 % / 100 % |' in results
     assert results[-1] == 'Alarms that name a node which has nothing to do with the fault: 0 of 0.'
 
 
@@ -120,16 +121,16 @@ def test_the_ablation_marks_what_differs() -> None:
 
 @pytest.mark.parametrize('median, differs', [(0.54, False), (0.6, True), (None, True)])
 def test_small_differences_are_told_as_the_same(median: Optional[float], differs: bool) -> None:
-    cells = [ablation.cells([row(FAMILIES), row(FAMILIES, 'flood', each)])['other faults']
+    found = [cells([row(FAMILIES), row(FAMILIES, 'flood', each)], {})['other faults']
              for each in (0.5, median)]
-    assert cells[1].differs(cells[0]) == differs
+    assert found[1].differs(found[0]) == differs
 
 
 def test_sections_are_put_in_their_place(tmp_path: Path) -> None:
     readme = tmp_path / RESULTS
     readme.write_text('# Mine\n\n<!-- families -->\nold\n<!-- /families -->\n\nMore.\n')
     rows = [row(FAMILIES), row(FAMILIES, CRASH, 0.4, True)]
-    written = page.write(tmp_path, families.section(rows), rows, 'evaluate families')
+    written = pages.write(tmp_path, families.section(rows), rows, 'evaluate families')
     assert [path.name for path in written] == ['families.csv', 'families.csv', RESULTS, RESEARCH]
     text = readme.read_text(encoding='utf-8')
     assert text.startswith('# Mine\n\n<!-- families -->\nWritten by `evaluate families`')

@@ -9,9 +9,6 @@ import pytest
 
 from self_awareness import Tuning
 from self_awareness_evaluation import evaluate, tunings
-from self_awareness_evaluation.variants import Variant
-
-from evaluation_robot import robot
 
 # Whatever the method has: one that no value switches off, one that is, and two channels.
 PLAIN = next(number for number in Tuning.numbers() if number.off is None)
@@ -25,14 +22,10 @@ def asked(*arguments: str) -> Tuning:
     return tunings.tuning_of(tunings.of(parser.parse_args(arguments)))
 
 
-def test_nothing_is_changed_by_default() -> None:
-    assert asked() == Tuning()
-
-
 def test_numbers_are_set_and_channels_left_out() -> None:
+    assert asked() == Tuning()
     tuning = asked('--set', f'{PLAIN.name}={PLAIN.most}', '--without', CHANNELS[0],
                    '--set', f'{RULE.name}=off', '--without', CHANNELS[1])
-    assert tuning != Tuning()
     assert (tuning.get(PLAIN.name), tuning.get(RULE.name)) == (PLAIN.most, RULE.off)
     assert sorted(tuning.without) == sorted(CHANNELS)
 
@@ -43,9 +36,7 @@ def test_numbers_are_set_and_channels_left_out() -> None:
     (['--set', f'{PLAIN.name}={PLAIN.least - 1.0:g}'], [PLAIN.name, f'{PLAIN.least:g}']),
     (['--set', f'{PLAIN.name}=off'], [PLAIN.name, 'off']),
     (['--set', f'{PLAIN.name}=nan'], [PLAIN.name, 'nan']),
-    (['--without', 'smell'], ['smell', CHANNELS[0]]),
-    # As it was until now: systems are left out by another option.
-    (['--without', 'paper'], ['paper', CHANNELS[0]])])
+    (['--without', 'smell'], ['smell', CHANNELS[0]])])
 def test_wrong_changes_are_refused(wrong: List[str], told: List[str], tmp_path: Path,
                                    capsys: Any) -> None:
     for part in (['simulated'], ['families'], ['recordings', '--data', str(tmp_path)]):
@@ -61,15 +52,3 @@ def test_a_change_that_no_system_has_is_refused(part: str, tmp_path: Path, capsy
                           '-o', str(tmp_path / 'out')]) == 1
     assert '--systems' in capsys.readouterr().err
     assert not (tmp_path / 'out').exists()
-
-
-def test_a_channel_that_is_left_out_finds_nothing() -> None:
-    training = [robot(60.0, seed) for seed in (1, 2, 3)]
-    death = robot(30.0, 4, silent=((15.0, 30.0),))
-    said = []
-    for change in ('', f'{tunings.WITHOUT}overdue'):
-        system = Variant('evidence', change=change).make(set())
-        system.train(training[:2])
-        system.calibrate(training[2:])
-        said.append([alarm.evidence for alarm in system.judge(death).alarms])
-    assert said[0] == ['overdue'] and 'overdue' not in said[1]

@@ -2,20 +2,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 from pathlib import Path
-from typing import Any, Callable, Dict, List, NamedTuple, Optional, Set
+from tempfile import TemporaryDirectory
+from typing import Any, Dict, List, NamedTuple
 
 import pytest
 import rosbag
+from simulated_runs import SCENARIO, robot
 
 from self_awareness.commands import simulate as simulate_program
 from self_awareness.training.robot_graph import RobotGraph
-from self_awareness_follow_me.effects import Setting
+from self_awareness_follow_me.effects import Change
 from self_awareness_follow_me.faults import effect_of
-from self_awareness_follow_me.scenario import Scenario, load_scenario
 from self_awareness_follow_me.simulation import START_S, InducedFault, events, simulate
 
-SCENARIO = Path(__file__).resolve().parents[3] / 'config' / 'follow_me.yaml'
 DURATION_S = 20.0
 ONSET_S = 10.0
 
@@ -32,34 +33,22 @@ class Recorded(NamedTuple):
 Bag = Dict[str, List[Recorded]]
 
 
-@pytest.fixture(name='scenario', scope='module')
-def _scenario() -> Scenario:
-    return load_scenario(SCENARIO)
-
-
-@pytest.fixture(name='bag_with', scope='module')
-def _bag_with(scenario: Scenario, tmp_path_factory: pytest.TempPathFactory
-              ) -> Callable[[Optional[str]], Bag]:
-    """Return what makes a bag with a fault, and reads what has a header in it."""
-    def make(kind: Optional[str], robot: Scenario = scenario) -> Bag:
-        path = tmp_path_factory.mktemp('bags') / 'it.bag'
-        fault = None if kind is None else InducedFault(kind, ONSET_S)
-        simulate(path, DURATION_S, 7, fault, robot)
-        found: Bag = {}
-        with rosbag.Bag(str(path)) as bag:
+@lru_cache(maxsize=None)
+def bag_with(kind: str = '', lost: float = 0.01, seed: int = 7) -> Bag:
+    """Make a bag with a fault, or without one, and read what has a header in it."""
+    of = replace(robot(), faults=replace(robot().faults, lossy=Change((), {'lost': lost})))
+    found: Bag = {}
+    with TemporaryDirectory() as folder:
+        path = f'{folder}/it.bag'
+        simulate(path, DURATION_S, seed, InducedFault(kind, ONSET_S) if kind else None, of)
+        with rosbag.Bag(path) as bag:
             for topic, message, stamp in bag.read_messages():
                 if message._has_header:
                     header = message.header
                     found.setdefault(topic, []).append(
                         Recorded(stamp.to_sec() - START_S, header.stamp.to_sec() - START_S,
                                  header.seq, message))
-        return found
-    return make
-
-
-@pytest.fixture(name='normal', scope='module')
-def _normal(bag_with: Callable[[Optional[str]], Bag]) -> Bag:
-    return bag_with(None)
+    return found
 
 
 def after(recorded: List[Recorded]) -> List[Recorded]:
@@ -74,27 +63,22 @@ def times(bag: Bag) -> Dict[str, List[float]]:
     return {topic: [each.at for each in recorded] for topic, recorded in bag.items()}
 
 
-def test_messages_are_those_of_a_real_robot(normal: Bag) -> None:
-    images = [bytes(each.message.data) for each in normal['/camera/image']]
-    assert len(set(images)) == len(images) > 100
-    assert len({len(image) for image in images}) > 10
+def images(bag: Bag) -> List[bytes]:
+    return [bytes(each.message.data) for each in bag['/camera/image']]
+
+
+def test_messages_are_those_of_a_real_robot() -> None:
+    normal, of = bag_with(), images(bag_with())
+    assert len(set(of)) == len(of) > 100
+    assert len({len(image) for image in of}) > 10
+    assert not set(of) & set(images(bag_with(seed=8))), 'starts say different things'
     for topic, field in (('/scan', 'ranges'), ('/odom', 'pose'), ('/pose', 'pose')):
         said = {str(getattr(each.message, field)) for each in normal[topic]}
         assert len(said) == len(normal[topic]), topic
 
 
-def test_starts_say_different_things(scenario: Scenario, tmp_path: Path) -> None:
-    said: Set[bytes] = set()
-    for seed in (1, 2):
-        path = tmp_path / f'{seed}.bag'
-        simulate(path, 2.0, seed, None, scenario, START_S + seed)
-        with rosbag.Bag(str(path)) as bag:
-            said |= {bytes(message.data) for _, message, _ in bag.read_messages('/camera/image')}
-    assert len(said) == 30
-
-
-def test_stale_stamp(bag_with: Callable[[str], Bag], normal: Bag) -> None:
-    bag = bag_with('stale:slam')
+def test_stale_stamp() -> None:
+    bag, normal = bag_with('stale:slam'), bag_with()
     assert times(bag) == times(normal)
     for topic in ('/pose', '/pose_hypotheses'):
         assert len({each.stamp for each in after(bag[topic])}) == 1, topic
@@ -104,10 +88,8 @@ def test_stale_stamp(bag_with: Callable[[str], Bag], normal: Bag) -> None:
     assert len({str(each.message.pose) for each in bag['/pose']}) == len(bag['/pose'])
 
 
-def test_lost_messages_are_counted(bag_with: Callable[..., Bag], scenario: Scenario,
-                                   normal: Bag) -> None:
-    robot = replace(scenario, faults=replace(scenario.faults, lossy=Setting((), 'lost', 0.1)))
-    bag = bag_with('lossy:motors', robot)
+def test_lost_messages_are_counted() -> None:
+    bag, normal = bag_with('lossy:motors', 0.1), bag_with()
     numbers = [each.number for each in bag['/odom']]
     gaps = [b - a - 1 for a, b in zip(numbers, numbers[1:])]
     begin = len(before(bag['/odom'])) - 1
@@ -117,29 +99,22 @@ def test_lost_messages_are_counted(bag_with: Callable[..., Bag], scenario: Scena
     assert len(bag['/scan']) == pytest.approx(len(normal['/scan']), abs=1)
 
 
-def test_one_in_a_hundred_is_lost_by_default(scenario: Scenario) -> None:
-    effect = effect_of(scenario, 'lossy:camera')
-    assert effect == Setting(('camera',), 'lost', 0.01)
+def test_one_in_a_hundred_is_lost_by_default() -> None:
+    assert effect_of(robot(), 'lossy:camera') == Change(('camera',), {'lost': 0.01})
 
 
-def test_empty_messages(bag_with: Callable[[str], Bag], normal: Bag) -> None:
-    bag = bag_with('empty:player')
-    assert times(bag) == times(normal)
-    assert {len(each.message.ranges) for each in before(bag['/scan'])} == {180}
-    assert {len(each.message.ranges) for each in after(bag['/scan'])} == {0}
-    assert [each.stamp for each in bag['/scan']] == [each.stamp for each in normal['/scan']]
+def test_empty_and_frozen_messages() -> None:
+    empty, frozen, normal = bag_with('empty:player'), bag_with('freeze:camera'), bag_with()
+    assert {len(each.message.ranges) for each in before(empty['/scan'])} == {180}
+    assert {len(each.message.ranges) for each in after(empty['/scan'])} == {0}
+    still = images({'/camera/image': after(frozen['/camera/image'])})
+    assert len(still) > 60 and len(set(still)) == 1
+    for bag, topic in ((empty, '/scan'), (frozen, '/camera/image')):
+        assert times(bag) == times(normal)
+        assert [each.stamp for each in bag[topic]] == [each.stamp for each in normal[topic]]
 
 
-def test_frozen_image(bag_with: Callable[[str], Bag], normal: Bag) -> None:
-    bag = bag_with('freeze:camera')
-    assert times(bag) == times(normal)
-    images = [bytes(each.message.data) for each in after(bag['/camera/image'])]
-    assert len(images) > 60 and len(set(images)) == 1
-    stamps = [each.stamp for each in bag['/camera/image']]
-    assert stamps == [each.stamp for each in normal['/camera/image']]
-
-
-def test_missing_subscriber_is_in_the_graph_only(scenario: Scenario, tmp_path: Path) -> None:
+def test_missing_subscriber_is_in_the_graph_only(tmp_path: Path) -> None:
     kinds: Dict[str, List[str]] = {'normal': [], 'deaf': ['--fault', 'unsubscribed:navigation@1']}
     graphs = {}
     for name, options in kinds.items():
@@ -152,16 +127,5 @@ def test_missing_subscriber_is_in_the_graph_only(scenario: Scenario, tmp_path: P
     assert missing == {('/pose_hypotheses', '/navigation')}
     assert graphs['deaf'].publishers == graphs['normal'].publishers
     fault = InducedFault('unsubscribed:navigation', ONSET_S)
-    assert (list(events(DURATION_S, 7, fault, scenario))
-            == list(events(DURATION_S, 7, scenario=scenario)))
-
-
-@pytest.mark.parametrize('kind, message', [
-    ('stale:dialog', "no message of 'dialog' has a stamp"),
-    ('empty:motors', "no message of 'motors' has a list that can be empty"),
-    ('unsubscribed:player', "'player' hears nothing that it could miss"),
-])
-def test_component_that_cannot_have_the_fault(scenario: Scenario, kind: str,
-                                              message: str) -> None:
-    with pytest.raises(ValueError, match=f'fault {kind}: {message}.*choose another component'):
-        effect_of(scenario, kind)
+    assert (list(events(DURATION_S, 7, fault, robot()))
+            == list(events(DURATION_S, 7, scenario=robot())))

@@ -49,30 +49,19 @@ def heads(*of: Any, **lists: Any) -> List[Tuple[str, str]]:
     return lines.head(said, 80, False)[1:]
 
 
-class Clock:
-    """A steady clock that a test sets."""
-
-    def __init__(self) -> None:
-        self.now = 100.0
-
-    def __call__(self) -> float:
-        return self.now
-
-
 def diagnostics(*statuses: Any) -> Any:
     return SimpleNamespace(status=list(statuses))
 
 
-def verdict(score: float, threshold: float = -1.0, settling: bool = False) -> Any:
-    return SimpleNamespace(score=score, threshold=threshold, settling=settling, level=0, alarm=0,
-                           component='', kind='', suspects=[])
+def verdict(score: float, threshold: float = -1.0, **fields: Any) -> Any:
+    return SimpleNamespace(**{**dict(score=score, threshold=threshold, settling=False, level=0,
+                                     alarm=0, component='', kind='', suspects=[]), **fields})
 
 
-def stands(alarm: int, component: str, kind: str, *suspects: Tuple[str, str]) -> Any:
-    of = verdict(-2.0)
-    of.level, of.alarm, of.component, of.kind = 2, alarm, component, kind
-    of.suspects = [SimpleNamespace(component=name, kind=what) for name, what in suspects]
-    return of
+def stands(alarm: int, component: str, kind: str, *suspects: Tuple[str, str],
+           level: int = 2) -> Any:
+    return verdict(-2.0, level=level, alarm=alarm, component=component, kind=kind, suspects=[
+        SimpleNamespace(component=name, kind=what) for name, what in suspects])
 
 
 def incident(component: str, alarms: int = 1, over: bool = False, **lists: List[str]) -> Any:
@@ -154,10 +143,14 @@ def test_who_is_at_its_limit_is_not_heard_as_ever(level: int, share: float, stat
     assert row(of) == (style, f'/a 10.0/12.5 0.1 s {percent} 0.4 s {shown}')
 
 
-def test_who_is_at_its_limit_is_above_those_that_are_as_usual() -> None:
+@pytest.mark.parametrize('sort, values', [
+    ('level', {'share': 2.3}), ('age', {'state': 'not heard yet', 'age': -1.0})])
+def test_who_is_at_its_limit_or_was_never_heard_comes_first(sort: str,
+                                                            values: Dict[str, Any]) -> None:
     of = Said('/watch')
-    of.on_components(components(of_component('/a'), of_component('/b', share=2.3)))
-    assert [each.name for each in of.components('level', '')] == ['/b', '/a']
+    of.on_components(components(of_component('/gone'), of_component('/gone')))
+    of.on_components(components(of_component('/a', age=9.0), of_component('/b', **values)))
+    assert [each.name for each in of.components(sort, '')] == ['/b', '/a']
 
 
 def test_it_counts_who_is_heard_so_far_until_all_are() -> None:
@@ -179,16 +172,16 @@ def test_who_is_not_watched_comes_with_the_reason() -> None:
     assert heads(rare, tool) == [('faint', 'not watched: /rare (too few)')], 'of the model'
 
 
-def test_it_shows_the_mode_that_the_robot_tells() -> None:
-    def shown(values: Dict[str, str]) -> List[str]:
-        of = Said('/watch')
-        of.on_diagnostics(diagnostics(status('watch: monitor', 0, 'listening', **values)))
-        return [line for _, line in lines.head(of, 40, False) if line.startswith('mode: ')]
-
-    assert shown({'mode': 'DRIVING (/state), for 42 s'}) == ['mode: DRIVING (/state), for 42 s']
-    assert shown({'mode': 'LO\x1bST (/state), for 42 s, not seen in training'}) == [
-        'mode: LO\ufffdST (/state), for 42 s, not see…']
-    assert shown({}) == []
+@pytest.mark.parametrize('values, shown', [
+    ({'mode': 'DRIVING (/state), for 42 s'}, ['mode: DRIVING (/state), for 42 s']),
+    ({'mode': 'LO\x1bST (/state), for 42 s, not seen in training'}, [
+        'mode: LO\ufffdST (/state), for 42 s, not see…']),
+    ({}, [])])
+def test_it_shows_the_mode_that_the_robot_tells(values: Dict[str, str],
+                                                shown: List[str]) -> None:
+    of = Said('/watch')
+    of.on_diagnostics(diagnostics(status('watch: monitor', 0, 'listening', **values)))
+    assert [line for _, line in lines.head(of, 40, False) if line.startswith('mode: ')] == shown
 
 
 def test_nothing_is_green_that_nobody_has_said() -> None:
@@ -223,13 +216,6 @@ def test_whatever_a_stranger_publishes_it_goes_on() -> None:
     found, = of.components('limit', '')
     assert lines.component(found, 80)[0] == 'STALE'
     assert lines.head(of, 80, False)[0][0] == 'STALE'
-
-
-def test_who_was_never_heard_comes_first_by_age() -> None:
-    of = Said('/watch')
-    of.on_components(components(of_component('/a', age=9.0),
-                                of_component('/b', state='not heard yet', age=-1.0)))
-    assert [each.name for each in of.components('age', '')] == ['/b', '/a']
 
 
 def test_the_curve_is_in_units_of_the_limit(said: Said) -> None:
@@ -273,9 +259,7 @@ def test_what_stands_is_what_the_verdict_says(said: Said) -> None:
     assert said.standing == 7 and said.deaths == ['/player', '/slam']
     said.on_status(stands(8, '/player', 'slow', ('/player', 'slow')))
     assert said.standing == 8 and said.deaths == []
-    over = stands(8, '/player', 'silent')
-    over.level = 0
-    said.on_status(over)
+    said.on_status(stands(8, '/player', 'silent', level=0))
     assert said.standing == 0 and said.deaths == [], 'it ended with this window'
 
 
@@ -286,35 +270,23 @@ def test_names_do_not_control_the_terminal(said: Said) -> None:
                 if '\x1b' in lines.component(each, 80)[1]]
 
 
-def test_before_the_first_word() -> None:
-    (style, text), = lines.head(Said('/watch'), 80, False)
-    assert text.startswith('waiting for the monitor')
-    assert lines.incidents(Said('/watch'), 80) == [('head', 'no incident')]
-
-
 def test_a_monitor_that_is_silent_is_stale() -> None:
-    clock = Clock()
-    of = Said('/watch', clock)
+    now = 100.0
+    of = Said('/watch', lambda: now)
     assert lines.head(of, 80, False) == [('head', 'waiting for the monitor ...')]
-    clock.now += 60
+    assert lines.incidents(of, 80) == [('head', 'no incident')]
+    now += 60
     assert of.silent_for == 0.0, 'it was never heard'
     of.on_diagnostics(diagnostics(status('watch: communication', message='normal communication')))
-    clock.now += 4.9
+    now += 4.9
     assert lines.head(of, 80, False)[0] == ('OK', 'OK  normal communication')
     of.on_diagnostics(diagnostics(status('another: communication')))
-    clock.now += 1.1
+    now += 1.1
     style, text = lines.head(of, 80, False)[0]
     assert style == 'STALE'
     assert text.startswith('STALE  the monitor has not been heard for 6 s; it said: normal')
     of.on_status(verdict(-0.5))
     assert lines.head(of, 80, False)[0][0] == 'OK'
-
-
-def test_what_was_told_before_goes() -> None:
-    of = Said('/watch')
-    of.on_components(components(of_component('/a'), mutes=['/a']))
-    of.on_components(components(of_component('/b')))
-    assert [each.name for each in of.components('name', '')] == ['/b'] and of.listed('mutes') == []
 
 
 def test_of_many_mutes_the_first_are_shown() -> None:

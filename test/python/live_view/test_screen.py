@@ -106,24 +106,17 @@ def test_a_pause_keeps_what_is_shown(shown: Shown, paused: bool) -> None:
 
 
 def test_what_comes_after_the_question_is_not_accepted(shown: Shown) -> None:
-    first = shown.told_new(1)
-    assert shown.press('a') == 'accept 1 that are new? (y/n)'
-    shown.told_new(9)
-    shown.press('y')
-    assert shown.called == [(0, first)]
+    first = shown.told_new(9)
+    assert shown.press('a') == 'accept 9 that are new? (y/n)'
+    shown.told_new(1)
+    assert shown.press('y') == 'done'
+    assert shown.called == [(0, first)], 'in one call'
 
 
 def test_a_warning_of_which_nothing_stands_is_not_accepted(shown: Shown) -> None:
     shown.said.on_diagnostics(SimpleNamespace(status=[SimpleNamespace(
         name='watch: communication', level=1, message='is the model of this robot?', values=[])]))
     assert shown.press('a') == 'nothing stands, and nobody is new' and shown.called == []
-
-
-def test_all_who_are_new_are_accepted_in_one_call(shown: Shown) -> None:
-    new = shown.told_new(9)
-    assert shown.press('a') == 'accept 9 that are new? (y/n)'
-    assert shown.press('y') == 'done'
-    assert shown.called == [(0, new)]
 
 
 def test_the_selected_component_is_highlighted_and_stays_so(shown: Shown) -> None:

@@ -3,8 +3,10 @@ from __future__ import annotations
 
 import os
 import signal
+from functools import partial
 from pathlib import Path
-from typing import Callable, Dict, List, Optional, Set, Tuple
+from typing import Callable, Dict, Iterator, List, Optional, Set, Tuple
+from unittest.mock import MagicMock
 
 import pytest
 from launched import launched
@@ -13,7 +15,7 @@ from self_awareness.recovery.actions import ActionError, Actions
 from self_awareness.recovery.launchers import Launchers
 from self_awareness.recovery.node_calls import NodeCalls
 from self_awareness.recovery.node_process import process_of
-from self_awareness.recovery.rules import Call, Stop
+from self_awareness.recovery.rules import Call, Step, Stop
 from self_awareness.recovery.xml_rpc import NoAnswer
 
 HERE, THERE = 'http://here:1/', 'http://there:1/'
@@ -74,6 +76,35 @@ class Robot(NodeCalls):
         return {*self.pids, '/base', '/rosout', *self.own}, self.own
 
 
+@pytest.fixture
+def pid(tmp_path: Path) -> Iterator[int]:
+    """The process of a node."""
+    with launched(tmp_path, '__name:=player') as found:
+        yield found
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Iterator[Robot]:
+    """Two nodes that run."""
+    (tmp_path / 'slam').mkdir()
+    with launched(tmp_path, '__name:=player') as player, \
+            launched(tmp_path / 'slam', '__name:=slam') as slam:
+        yield Robot(player=player, slam=slam)
+
+
+STOP = Stop(('/player',))
+
+
+def looked(robot: Robot, *nodes: str) -> Actions:
+    actions = Actions(robot, nodes or ('/player',), GRACE_S)
+    actions.look()
+    return actions
+
+
+def do(actions: Actions, step: Step = STOP) -> str:
+    return actions.do(step, '/player', lambda _: None)
+
+
 def stop(robot: Robot, *nodes: str, known: bool = True, grace: float = GRACE_S,
          held: Callable[[], str] = str) -> str:
     actions = Actions(robot, nodes, grace, held)
@@ -84,11 +115,10 @@ def stop(robot: Robot, *nodes: str, known: bool = True, grace: float = GRACE_S,
     return actions.do(Stop(nodes), nodes[0], lambda node: robot.told.append(f'mute {node}'))
 
 
-def test_who_is_well_is_asked_to_end(tmp_path: Path) -> None:
-    with launched(tmp_path, '__name:=player') as pid:
-        robot = Robot(player=pid)
-        assert stop(robot, '/player') == '/player ended when it was asked to'
-        assert robot.told == ['/player']
+def test_who_is_well_is_asked_to_end(pid: int) -> None:
+    robot = Robot(player=pid)
+    assert stop(robot, '/player') == '/player ended when it was asked to'
+    assert robot.told == ['/player']
 
 
 def test_who_does_not_end_when_asked_is_killed(tmp_path: Path) -> None:
@@ -96,178 +126,138 @@ def test_who_does_not_end_when_asked_is_killed(tmp_path: Path) -> None:
         assert stop(Robot(player=pid), '/player', grace=DEAF_S) == '/player ended by SIGKILL'
 
 
-def test_who_hangs_is_known_from_when_it_was_well(tmp_path: Path) -> None:
-    with launched(tmp_path, '__name:=player') as pid:
-        robot = Robot(player=pid)
-        robot.hanging.add('/player')
-        with pytest.raises(ActionError, match='its process is not known'):
-            stop(robot, '/player', known=False)
-        os.kill(pid, signal.SIGSTOP)
-        assert stop(robot, '/player', grace=DEAF_S) == (
-            '/player ended by SIGKILL, since it hangs')
-        assert robot.told == []
+def test_who_hangs_is_known_from_when_it_was_well(pid: int) -> None:
+    robot = Robot(player=pid)
+    robot.hanging.add('/player')
+    with pytest.raises(ActionError, match='its process is not known'):
+        stop(robot, '/player', known=False)
+    os.kill(pid, signal.SIGSTOP)
+    assert stop(robot, '/player', grace=DEAF_S) == (
+        '/player ended by SIGKILL, since it hangs')
+    assert robot.told == []
 
 
-def test_another_start_that_hangs_from_the_beginning_is_not_the_one_before(tmp_path: Path
-                                                                           ) -> None:
-    with launched(tmp_path, '__name:=player') as pid:
-        robot = Robot(player=pid)
-        actions = Actions(robot, ['/player'], GRACE_S)
-        actions.look()
-        robot.hanging.add('/player')
-        robot.addresses['/player'] = 'http://here:2/'
-        with pytest.raises(ActionError, match='its process is not known'):
-            actions.do(Stop(('/player',)), '/player', lambda _: None)
-        assert process_of('/player', pid).runs()
+def test_another_start_that_hangs_from_the_beginning_is_not_the_one_before(pid: int) -> None:
+    robot = Robot(player=pid)
+    actions = looked(robot)
+    robot.hanging.add('/player')
+    robot.addresses['/player'] = 'http://here:2/'
+    with pytest.raises(ActionError, match='its process is not known'):
+        do(actions)
+    assert process_of('/player', pid).runs()
 
 
 @pytest.mark.parametrize('gone', [True, False])
 def test_who_has_ended_already_is_left_to_roslaunch_and_the_next_one_follows(
-        tmp_path: Path, gone: bool) -> None:
-    (tmp_path / 'slam').mkdir()
-    with launched(tmp_path, '__name:=player') as player, \
-            launched(tmp_path / 'slam', '__name:=slam') as slam:
-        robot = Robot(player=player, slam=slam)
-        nodes = ('/player', '/slam')
-        actions = Actions(robot, nodes, GRACE_S)
-        actions.look()
-        process_of('/player', player).end(GRACE_S)
-        (robot.gone if gone else robot.hanging).add('/player')
-        assert actions.would_do(Stop(nodes)) == (
-            f'/player has ended already; roslaunch starts it again, /slam is process {slam}')
-        assert actions.do(Stop(nodes), '/player', lambda _: None) == (
-            '/player has ended already; roslaunch starts it again, '
-            '/slam ended when it was asked to')
+        robot: Robot, gone: bool) -> None:
+    both = Stop(('/player', '/slam'))
+    actions = looked(robot, *both.nodes)
+    process_of('/player', robot.pids['/player']).end(GRACE_S)
+    (robot.gone if gone else robot.hanging).add('/player')
+    assert actions.would_do(both) == ('/player has ended already; roslaunch starts it again, '
+                                      f'/slam is process {robot.pids["/slam"]}')
+    assert do(actions, both) == (
+        '/player has ended already; roslaunch starts it again, '
+        '/slam ended when it was asked to')
 
 
-def test_dependents_follow_and_are_muted_first(tmp_path: Path) -> None:
-    (tmp_path / 'slam').mkdir()
-    with launched(tmp_path, '__name:=player') as player, \
-            launched(tmp_path / 'slam', '__name:=slam') as slam:
-        robot = Robot(player=player, slam=slam)
-        assert stop(robot, '/player', '/slam') == (
-            '/player ended when it was asked to, /slam ended when it was asked to')
-        assert robot.told == ['/player', 'mute /slam', '/slam']
+def test_dependents_follow_and_are_muted_first(robot: Robot) -> None:
+    assert stop(robot, '/player', '/slam') == (
+        '/player ended when it was asked to, /slam ended when it was asked to')
+    assert robot.told == ['/player', 'mute /slam', '/slam']
 
 
-def test_on_another_machine_it_can_only_be_asked() -> None:
+def test_on_another_machine_it_can_only_be_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     robot = Robot(player=1)
     robot.addresses['/player'] = THERE
     assert stop(robot, '/player') == '/player asked to end, on another machine'
+    monkeypatch.setattr(robot, 'shut_down', MagicMock(side_effect=NoAnswer('no answer')))
+    with pytest.raises(ActionError, match='on another machine, and did not answer'):
+        stop(robot, '/player')
     robot.hanging.add('/player')
     with pytest.raises(ActionError, match='runs on another machine'):
         stop(robot, '/player')
 
 
-def test_on_another_machine_no_answer_is_a_failure() -> None:
-    class Deaf(Robot):
-
-        def shut_down(self, node: str, address: str, reason: str) -> None:
-            raise NoAnswer(f'{node} does not answer')
-
-    robot = Deaf(player=1)
-    robot.addresses['/player'] = THERE
-    with pytest.raises(ActionError, match='on another machine, and did not answer'):
-        stop(robot, '/player')
-
-
-def test_nodes_of_this_package_are_refused_whatever_their_names(tmp_path: Path) -> None:
-    with launched(tmp_path, '__name:=watch') as pid:
-        robot = Robot(watch=pid)
-        robot.own.add('/watch')
-        with pytest.raises(ActionError, match='/watch is a monitor or a recorder'):
-            stop(robot, '/watch')
-        assert process_of('/watch', pid).runs()
-
-
-def test_the_whole_robot_is_refused(tmp_path: Path) -> None:
-    with launched(tmp_path, '__name:=base') as pid:
-        robot = Robot(base=pid)
-        with pytest.raises(ActionError, match='all nodes of the robot'):
-            stop(robot, '/base')
-        assert process_of('/base', pid).runs()
+@pytest.mark.parametrize('own, why', [({'/base'}, '/base is a monitor or a recorder'),
+                                      (set(), 'all nodes of the robot')])
+def test_nodes_of_this_package_and_the_whole_robot_are_refused(pid: int, own: Set[str],
+                                                               why: str) -> None:
+    """Whatever their names are."""
+    robot = Robot(base=pid)
+    robot.own = own
+    with pytest.raises(ActionError, match=why):
+        stop(robot, '/base', known=False)
+    assert process_of('/player', pid).runs() and robot.told == []
 
 
 def test_a_node_that_cannot_be_stopped_is_told_before_it_is_needed(tmp_path: Path) -> None:
     with launched(tmp_path, '__name:=player', by='terminal') as pid:
-        actions = Actions(Robot(player=pid), ['/player'], GRACE_S)
-        actions.look()
+        actions = looked(Robot(player=pid))
         assert [why for why in actions.refused() if 'not started by roslaunch' in why]
         with pytest.raises(ActionError, match='not started by roslaunch'):
-            actions.do(Stop(('/player',)), '/player', lambda _: None)
+            do(actions)
 
 
-def test_who_would_stay_dead_is_refused_and_told_before(tmp_path: Path) -> None:
-    with launched(tmp_path, '__name:=player') as pid:
-        robot = Robot(player=pid)
-        robot.why_dead['/player'] = '/player is not respawn="true"'
-        actions = Actions(robot, ['/player'], GRACE_S)
-        actions.look()
-        assert actions.refused() == ['/player is not respawn="true"']
-        with pytest.raises(ActionError, match='is not respawn="true"'):
-            actions.do(Stop(('/player',)), '/player', lambda _: None)
-        assert process_of('/player', pid).runs()
-        robot.why_dead.clear()
-        actions.look()
-        assert actions.refused() == []
-        robot.why_dead['/player'] = '/player is required="true"'
-        robot.hanging.add('/player')
-        with pytest.raises(ActionError, match='is required="true"'):
-            actions.do(Stop(('/player',)), '/player', lambda _: None)
-        assert process_of('/player', pid).runs()
-        assert robot.told == []
+def test_who_would_stay_dead_is_refused_and_told_before(pid: int) -> None:
+    robot = Robot(player=pid)
+    robot.why_dead['/player'] = '/player is not respawn="true"'
+    actions = looked(robot)
+    assert actions.refused() == ['/player is not respawn="true"']
+    with pytest.raises(ActionError, match='is not respawn="true"'):
+        do(actions)
+    assert process_of('/player', pid).runs()
+    robot.why_dead.clear()
+    actions.look()
+    assert actions.refused() == []
+    robot.why_dead['/player'] = '/player is required="true"'
+    robot.hanging.add('/player')
+    with pytest.raises(ActionError, match='is required="true"'):
+        do(actions)
+    assert process_of('/player', pid).runs()
+    assert robot.told == []
 
 
-def test_without_an_answer_of_roslaunch_nobody_is_stopped(tmp_path: Path,
+def test_without_an_answer_of_roslaunch_nobody_is_stopped(pid: int,
                                                           monkeypatch: pytest.MonkeyPatch) -> None:
-    def no_answer(_: NodeCalls) -> Launchers:
-        raise NoAnswer('the master does not answer')
-
-    with launched(tmp_path, '__name:=player') as pid:
-        monkeypatch.setattr(Robot, 'launchers', no_answer)
-        with pytest.raises(ActionError, match='/player may stay dead: .* not answer'):
-            stop(Robot(player=pid), '/player')
-        assert process_of('/player', pid).runs()
+    monkeypatch.setattr(Robot, 'launchers', MagicMock(
+        side_effect=NoAnswer('the master does not answer')))
+    with pytest.raises(ActionError, match='/player may stay dead: .* not answer'):
+        stop(Robot(player=pid), '/player')
+    assert process_of('/player', pid).runs()
 
 
 def test_who_has_never_answered_is_named() -> None:
     robot = Robot()
     robot.gone.add('/plyer')
-    actions = Actions(robot, ['/plyer'], GRACE_S)
-    actions.look()
+    actions = looked(robot, '/plyer')
     assert actions.refused() == ['/plyer: not heard so far']
-    for doing in (lambda: actions.would_do(Stop(('/plyer',))),
-                  lambda: actions.do(Stop(('/plyer',)), '/plyer', lambda _: None)):
+    ways: List[Callable[[Step], str]] = [actions.would_do, partial(do, actions)]
+    for doing in ways:
         with pytest.raises(ActionError, match='unknown node /plyer'):
-            doing()
+            doing(Stop(('/plyer',)))
 
 
-def test_a_dry_run_looks_and_does_nothing(tmp_path: Path) -> None:
-    with launched(tmp_path, '__name:=player') as pid:
-        robot = Robot(player=pid)
-        actions = Actions(robot, ['/player'], GRACE_S)
-        step = Stop(('/player',))
-        assert actions.would_do(step) == f'/player is process {pid}'
-        robot.hanging.add('/player')
-        assert actions.would_do(step) == f'/player hangs, and is process {pid}'
-        robot.why_dead['/player'] = '/player is required="true"'
-        with pytest.raises(ActionError, match='is required="true"'):
-            actions.would_do(step)
-        assert process_of('/player', pid).runs()
-        assert robot.told == []
+def test_a_dry_run_looks_and_does_nothing(pid: int) -> None:
+    robot = Robot(player=pid)
+    actions = looked(robot)
+    assert actions.would_do(STOP) == f'/player is process {pid}'
+    robot.hanging.add('/player')
+    assert actions.would_do(STOP) == f'/player hangs, and is process {pid}'
+    robot.why_dead['/player'] = '/player is required="true"'
+    with pytest.raises(ActionError, match='is required="true"'):
+        actions.would_do(STOP)
+    assert process_of('/player', pid).runs()
+    assert robot.told == []
 
 
 def test_a_dry_run_looks_for_a_service(monkeypatch: pytest.MonkeyPatch) -> None:
-    def only_reset(_: NodeCalls, name: str) -> str:
-        if name != '/reset':
-            raise NoAnswer(f'the master says: no provider of {name}')
-        return 'rosrpc://here:1'
-
-    monkeypatch.setattr(NodeCalls, 'service', only_reset)
+    monkeypatch.setattr(NodeCalls, 'service', MagicMock(
+        side_effect=['rosrpc://here:1', NoAnswer('no provider of /reset')]))
     actions = Actions(Robot(), [], GRACE_S)
     assert actions.would_do(Call('/reset')) == '/reset is there'
-    with pytest.raises(ActionError, match='no provider of /rest'):
-        actions.would_do(Call('/rest'))
+    with pytest.raises(ActionError, match='no provider of /reset'):
+        actions.would_do(Call('/reset'))
 
 
 def test_a_hold_comes_before_the_next_signal(tmp_path: Path) -> None:
@@ -288,19 +278,14 @@ def test_a_hold_comes_before_the_next_signal(tmp_path: Path) -> None:
         assert robot.told == ['/player']
 
 
-def test_a_hold_comes_before_the_next_node(tmp_path: Path) -> None:
-    (tmp_path / 'slam').mkdir()
-    with launched(tmp_path, '__name:=player') as player, \
-            launched(tmp_path / 'slam', '__name:=slam') as slam:
-        robot = Robot(player=player, slam=slam)
-        process = process_of('/player', player)
-        with pytest.raises(ActionError, match='^/player ended .*; not done to its end: held'):
-            stop(robot, '/player', '/slam', held=lambda: '' if process.runs() else 'held')
-        assert process_of('/slam', slam).runs()
-        assert robot.told == ['/player']
+def test_a_hold_comes_before_the_next_node(robot: Robot) -> None:
+    process, slam = (process_of(name, pid) for name, pid in robot.pids.items())
+    with pytest.raises(ActionError, match='^/player ended .*; not done to its end: held'):
+        stop(robot, '/player', '/slam', held=lambda: '' if process.runs() else 'held')
+    assert slam.runs()
+    assert robot.told == ['/player']
 
 
 def test_a_hold_comes_before_a_call() -> None:
     with pytest.raises(ActionError, match='not done to its end: held'):
-        Actions(Robot(), [], GRACE_S, lambda: 'held').do(Call('/reset'), '/player',
-                                                         lambda _: None)
+        do(Actions(Robot(), [], GRACE_S, lambda: 'held'), Call('/reset'))

@@ -7,7 +7,7 @@ from typing import Any, Dict
 import pytest
 
 from self_awareness.recovery import history
-from self_awareness.recovery.history import MOST, Action, History
+from self_awareness.recovery.history import MOST, Action, History, Hold
 
 
 def action(incident: int = 7, **fields: Any) -> Action:
@@ -17,7 +17,8 @@ def action(incident: int = 7, **fields: Any) -> Action:
 
 def test_what_is_written_is_read(tmp_path: Path) -> None:
     path = str(tmp_path / 'new' / 'a.actions')
-    written = History([], 5 * 10 ** 18)
+    assert history.load(path) == History(), 'there is no file yet'
+    written = History([], Hold(5 * 10 ** 18))
     for number in range(3):
         written.begin(action(number))
         written.end(bool(number), f'"{number}": äß\U0001f600\nand more\x07')
@@ -30,45 +31,27 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
 
 def test_the_steady_times_are_of_one_boot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = str(tmp_path / 'a.actions')
-    written = History([action(steady=5)], 7, 6)
+    written = History([action(steady=5)], Hold(7, 6))
     written.save(path)
     assert history.load(path) == written
     boot = tmp_path / 'boot_id'
     boot.write_text('another\n')
-    monkeypatch.setattr(history, '_BOOT_ID', boot)
-    assert history.load(path) == History([action()], 7)
-    monkeypatch.setattr(history, '_BOOT_ID', tmp_path / 'none')
-    assert history.load(path) == History([action()], 7)
+    for other in (boot, tmp_path / 'none'):
+        monkeypatch.setattr(history, '_BOOT_ID', other)
+        assert history.load(path) == History([action()], Hold(7))
 
 
 def test_the_steady_clock_tells_the_time_of_this_boot() -> None:
     """The clock that all see may have been set."""
     hour = 3600 * 10 ** 9
-    kept = History([action(begin=9 * hour, steady=2 * hour), action(begin=9 * hour)],
-                   9 * hour, 5 * hour)
+    kept = History([action(begin=9 * hour, steady=2 * hour), action(begin=9 * hour)])
     assert kept.ages(3 * hour, 100 * hour) == [hour, 91 * hour]
     assert kept.ages(3 * hour, hour) == [hour, 0]
     assert kept.ages(hour, 10 * hour) == [hour, hour], 'it cannot be of this boot'
-    assert kept.hold_left(3 * hour, 100 * hour) == 2 * hour
-    assert kept.hold_left(6 * hour, hour) == 0
-    kept.held_until_steady = 0
-    assert kept.hold_left(3 * hour, 8 * hour) == hour
-    assert kept.hold_left(3 * hour, 100 * hour) == 0
-
-
-def test_what_was_being_done_at_the_end_of_a_start_is_over() -> None:
-    done = action(over=True, success=True, result='done')
-    assert history.ended([done, action()]) == [
-        done, action(over=True, result='the recovery ended meanwhile')]
-
-
-def test_the_steady_time_is_not_told() -> None:
-    assert 'steady' not in action(steady=5).told()
-    assert action(steady=5).told() == action().told()
-
-
-def test_no_file_is_no_action(tmp_path: Path) -> None:
-    assert history.load(str(tmp_path / 'a.actions')) == History()
+    hold = Hold(9 * hour, 5 * hour)
+    assert hold.left(3 * hour, 100 * hour) == 2 * hour and hold.left(6 * hour, hour) == 0
+    hold = Hold(9 * hour)
+    assert hold.left(3 * hour, 8 * hour) == hour and hold.left(3 * hour, 100 * hour) == 0
 
 
 def test_the_last_ones_are_kept_and_long_results_are_cut(tmp_path: Path) -> None:

@@ -5,7 +5,7 @@ import gzip
 import socket
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any, Callable, Iterator
 from xmlrpc.server import SimpleXMLRPCServer
 
@@ -30,6 +30,14 @@ def serving(**methods: Callable[..., Any]) -> Iterator[str]:
         finally:
             server.shutdown()
             thread.join()
+
+
+@pytest.fixture
+def master(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
+    """What starts a master with these methods."""
+    with ExitStack() as stack:
+        yield lambda **methods: monkeypatch.setenv('ROS_MASTER_URI', stack.enter_context(
+            serving(**methods)))
 
 
 def test_a_node_is_asked_in_the_name_of_the_recovery() -> None:
@@ -58,22 +66,20 @@ def test_who_does_not_answer_is_not_waited_for() -> None:
     with socket.socket() as mute:
         mute.bind(('127.0.0.1', 0))
         mute.listen(5)
+        address = f'http://127.0.0.1:{mute.getsockname()[1]}/'
         began = time.monotonic()
         with pytest.raises(NoAnswer, match='/player does not answer'):
-            CALLS.process_id('/player', f'http://127.0.0.1:{mute.getsockname()[1]}/')
+            CALLS.process_id('/player', address)
         assert time.monotonic() - began < 10.0 * ANSWER_S
-        address = f'http://127.0.0.1:{mute.getsockname()[1]}/'
     with pytest.raises(NoAnswer, match='/player does not answer'):
         CALLS.process_id('/player', address)
 
 
-def test_a_long_answer_is_read_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_long_answer_is_read_to_its_end(master: Callable[..., None]) -> None:
     types = [[f'/topic_{number}', 'std_msgs/Empty'] for number in range(5000)]
-    with serving(getSystemState=lambda name: (1, '', [[], [[name, ['/a']] for name, _ in types],
-                                                      []]),
-                 getTopicTypes=lambda name: (1, '', types)) as uri:
-        monkeypatch.setenv('ROS_MASTER_URI', uri)
-        assert CALLS.robot() == ({'/a'}, set())
+    master(getSystemState=lambda name: (1, '', [[], [[name, ['/a']] for name, _ in types], []]),
+           getTopicTypes=lambda name: (1, '', types))
+    assert CALLS.robot() == ({'/a'}, set())
 
 
 @contextmanager
@@ -139,35 +145,28 @@ def test_an_address_that_is_none_is_no_answer(address: str) -> None:
         assert 'is no address' in str(error)
 
 
-def test_parameters_and_services_are_those_of_the_master(monkeypatch: pytest.MonkeyPatch) -> None:
-    with serving(hasParam=lambda name, key: (1, '', key == '/a'),
-                 getParam=lambda name, key: (1, '', 'value'),
-                 lookupService=lambda name, service: (
-                     (1, '', 'rosrpc://here:1') if service == '/reset'
-                     else (-1, 'no provider', ''))) as uri:
-        monkeypatch.setenv('ROS_MASTER_URI', uri)
-        assert (CALLS.parameter('/a'), CALLS.parameter('/b')) == ('value', None)
-        assert CALLS.service('/reset') == 'rosrpc://here:1'
-        with pytest.raises(NoAnswer, match='no provider'):
-            CALLS.service('/rest')
+def test_parameters_and_services_are_those_of_the_master(master: Callable[..., None]) -> None:
+    master(hasParam=lambda name, key: (1, '', key == '/a'),
+           getParam=lambda name, key: (1, '', 'value'),
+           lookupService=lambda name, service: (
+               (1, '', 'rosrpc://here:1') if service == '/reset' else (-1, 'no provider', '')))
+    assert (CALLS.parameter('/a'), CALLS.parameter('/b')) == ('value', None)
+    assert CALLS.service('/reset') == 'rosrpc://here:1'
+    with pytest.raises(NoAnswer, match='no provider'):
+        CALLS.service('/rest')
 
 
-def test_who_listens_to_whom_is_told_by_the_master(monkeypatch: pytest.MonkeyPatch) -> None:
-    state = [[['/scan', ['/player']], ['/map', ['/slam']], ['/rosout', ['/player', '/slam']]],
+def test_the_master_tells_who_listens_to_whom_and_who_is_of_this_package(
+        master: Callable[..., None]) -> None:
+    """Monitors and recorders are known by what they publish."""
+    state = [[['/scan', ['/player']], ['/map', ['/slam']], ['/rosout', ['/player', '/slam']],
+              ['/w/status', ['/watch']], ['/odd', ['/base', '/watch']]],
              [['/scan', ['/slam', '/player']], ['/rosout', ['/rosout']]], []]
-    with serving(getSystemState=lambda name: (1, '', state)) as uri:
-        monkeypatch.setenv('ROS_MASTER_URI', uri)
-        assert CALLS.listeners() == {'/player': {'/slam'}, '/slam': set()}
-
-
-def test_monitors_and_recorders_are_known_by_what_they_publish(
-        monkeypatch: pytest.MonkeyPatch) -> None:
-    state = [[['/scan', ['/player']], ['/w/status', ['/watch']], ['/odd', ['/base', '/watch']]],
-             [['/scan', ['/slam']]], []]
     types = [['/scan', 'sensor_msgs/LaserScan'], ['/w/status', 'self_awareness/SelfAwareness']]
-    with serving(getSystemState=lambda name: (1, '', state), getTopicTypes=lambda name: (
-            1, '', types), lookupNode=lambda name, node: (-1, f'unknown node {node}', '')) as uri:
-        monkeypatch.setenv('ROS_MASTER_URI', uri)
-        assert CALLS.robot() == ({'/player', '/watch', '/base', '/slam'}, {'/watch'})
-        with pytest.raises(NoAnswer, match='the master says: unknown node /gone'):
-            CALLS.address('/gone')
+    master(getSystemState=lambda name: (1, '', state), getTopicTypes=lambda name: (1, '', types),
+           lookupNode=lambda name, node: (-1, f'unknown node {node}', ''))
+    assert CALLS.listeners() == {'/player': {'/slam'}, '/slam': set(), '/watch': set(),
+                                 '/base': set()}
+    assert CALLS.robot() == ({'/player', '/watch', '/base', '/slam', '/rosout'}, {'/watch'})
+    with pytest.raises(NoAnswer, match='the master says: unknown node /gone'):
+        CALLS.address('/gone')

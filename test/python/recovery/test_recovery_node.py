@@ -11,7 +11,7 @@ import pytest
 import rospy
 
 from self_awareness.recovery import history
-from self_awareness.recovery.history import ENDED_MEANWHILE, Action, History
+from self_awareness.recovery.history import Action, History, Hold
 from self_awareness.recovery.ladder import Fault, Order
 from self_awareness.recovery.node import Recovery
 from self_awareness.recovery.rules import Rule, Rules, Stop
@@ -33,13 +33,14 @@ def made(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Recovery:
     return made
 
 
-def path(tmp_path: Path) -> Path:
-    return tmp_path / 'monitor.actions'
+@pytest.fixture
+def path(tmp_path: Path) -> str:
+    return str(tmp_path / 'monitor.actions')
 
 
-def hold(recovery: Recovery, seconds: float) -> str:
+def hold(recovery: Recovery, seconds: float, by: str = '/me') -> str:
     return recovery._on_hold(SimpleNamespace(
-        duration=seconds, _connection_header={'callerid': '/me'})).message
+        duration=seconds, _connection_header={'callerid': by})).message
 
 
 def action(**fields: Any) -> Action:
@@ -47,10 +48,10 @@ def action(**fields: Any) -> Action:
 
 
 def test_where_the_actions_are_kept_is_known_when_the_monitor_is_there(
-        recovery: Recovery, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+        recovery: Recovery, path: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     directories: List[Any] = [None]
     monkeypatch.setattr(recovery._calls, 'parameter', lambda name: directories[0])
-    History([action(over=True)]).save(str(path(tmp_path)))
+    History([action(over=True)]).save(path)
     recovery._find_path()
     recovery._advance(0.0)
     assert recovery._history.actions == [], 'it may be set when the monitor is started'
@@ -61,7 +62,7 @@ def test_where_the_actions_are_kept_is_known_when_the_monitor_is_there(
     directories[0] = '/other'
     recovery._find_path()
     recovery._advance(0.2)
-    assert recovery._path == str(path(tmp_path))
+    assert recovery._path == path
 
 
 def test_a_monitor_without_the_parameter_has_the_usual_place(
@@ -75,23 +76,24 @@ def test_a_monitor_without_the_parameter_has_the_usual_place(
     assert recovery._found_path == '/ros/self_awareness/monitor/monitor.actions'
 
 
-def test_a_step_of_another_start_is_over(recovery: Recovery, tmp_path: Path) -> None:
-    History([action()]).save(str(path(tmp_path)))
+def test_a_step_of_another_start_is_over(recovery: Recovery, path: str) -> None:
+    done = action(over=True, success=True, result='done')
+    History([done, action()]).save(path)
     recovery._find_path()
     recovery._advance(0.0)
-    assert [each.result for each in recovery._history.actions] == [ENDED_MEANWHILE]
-    assert history.load(str(path(tmp_path))).actions == recovery._history.actions
+    assert recovery._history.actions[0] == done
+    assert recovery._history.actions[1].result == 'the recovery ended meanwhile'
+    assert history.load(path).actions == recovery._history.actions
 
 
-def test_a_hold_counts_before_it_is_known_where_it_is_kept(recovery: Recovery,
-                                                           tmp_path: Path) -> None:
-    History([], time.time_ns() + 600 * SECOND).save(str(path(tmp_path)))
+def test_a_hold_counts_before_it_is_known_where_it_is_kept(recovery: Recovery, path: str) -> None:
+    History([], Hold(time.time_ns() + 600 * SECOND)).save(path)
     assert hold(recovery, 0.0) == 'goes on'
     recovery._advance(0.0)
     recovery._find_path()
     recovery._advance(0.1)
     assert recovery._why_held() == ''
-    assert history.load(str(path(tmp_path))).held_until <= time.time_ns()
+    assert history.load(path).hold.until <= time.time_ns()
 
 
 def test_a_hold_that_is_not_kept_yet_says_so(recovery: Recovery) -> None:
@@ -102,15 +104,14 @@ def test_a_hold_that_is_not_kept_yet_says_so(recovery: Recovery) -> None:
 
 
 def test_who_holds_it_is_shown_in_short(recovery: Recovery) -> None:
-    recovery._on_hold(SimpleNamespace(duration=60.0, _connection_header={
-        'callerid': '/\x1b[31m' + 5000 * 'x'}))
+    hold(recovery, 60.0, '/\x1b[31m' + 5000 * 'x')
     why = recovery._why_held()
     assert '\x1b' not in why and len(why) < 300
 
 
-def test_a_hold_outlives_steps_of_the_clock(recovery: Recovery, tmp_path: Path) -> None:
+def test_a_hold_outlives_steps_of_the_clock(recovery: Recovery, path: str) -> None:
     now = time.monotonic_ns()
-    History([], 1, now + 600 * SECOND).save(str(path(tmp_path)))
+    History([], Hold(1, now + 600 * SECOND)).save(path)
     recovery._find_path()
     recovery._advance(0.0)
     assert recovery._why_held() == 'it is held'
@@ -125,29 +126,25 @@ def test_a_hold_says_what_is_still_being_done(recovery: Recovery) -> None:
     assert recovery._why_held() == ''
 
 
+def done(recovery: Recovery, dry_run: bool, do: Any, would_do: Any) -> Any:
+    """Let a step be done; return whether it was, and what came of it."""
+    recovery._rules = Rules((RULE,), dry_run=dry_run)
+    recovery._actions = MagicMock(do=MagicMock(side_effect=do),
+                                  would_do=MagicMock(side_effect=would_do))
+    recovery._do(Order(RULE, 1, RULE.steps[0], FAULT))
+    return recovery._done
+
+
 @pytest.mark.parametrize('dry_run, result', [
     (True, 'nothing, since this is a dry run: would end'), (False, 'ended')])
-def test_in_a_dry_run_nothing_is_done(recovery: Recovery, dry_run: bool, result: str,
-                                      monkeypatch: pytest.MonkeyPatch) -> None:
-    recovery._rules = Rules((RULE,), dry_run=dry_run)
-    monkeypatch.setattr(recovery._actions, 'do', lambda *_: 'ended')
-    monkeypatch.setattr(recovery._actions, 'would_do', lambda step: 'would end')
-    recovery._do(Order(RULE, 1, RULE.steps[0], FAULT))
-    assert recovery._done == (True, result)
+def test_in_a_dry_run_nothing_is_done(recovery: Recovery, dry_run: bool, result: str) -> None:
+    assert done(recovery, dry_run, ['ended'], ['would end']) == (True, result)
 
 
 @pytest.mark.parametrize('dry_run', [True, False])
-def test_a_step_that_fails_unexpectedly_has_failed(recovery: Recovery, dry_run: bool,
-                                                   monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(*_: Any) -> str:
-        raise UnicodeError('label empty or too long')
-
-    recovery._rules = Rules((RULE,), dry_run=dry_run)
-    monkeypatch.setattr(recovery._actions, 'do', fail)
-    monkeypatch.setattr(recovery._actions, 'would_do', fail)
-    recovery._do(Order(RULE, 1, RULE.steps[0], FAULT))
-    assert recovery._done is not None
-    success, result = recovery._done
+def test_a_step_that_fails_unexpectedly_has_failed(recovery: Recovery, dry_run: bool) -> None:
+    failure = UnicodeError('label empty or too long')
+    success, result = done(recovery, dry_run, failure, failure)
     assert not success and 'label empty or too long' in result
 
 

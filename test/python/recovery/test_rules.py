@@ -67,15 +67,12 @@ def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
     ({}, 'rules', 'missing'),
     ('# nothing\n', 'rules', 'missing'),
     ({'rules': []}, 'rules', 'at least one'),
-    ({'rules': GOOD}, 'rules', 'expected a list'),
     ({'rules': ['/player']}, 'rules[0]', 'expected keys'),
     ({**rule(), 'delays': 1}, 'delays', 'unknown key; allowed are: delay, dry_run'),
     ({**rule(), 'delay': -1}, 'delay', 'from 0 to 86400'),
     ({**rule(), 'delay': float('nan')}, 'delay', 'finite number'),
-    ({**rule(), 'delay': 'long'}, 'delay', 'finite number'),
     ({**rule(), 'wait': 0}, 'wait', 'from 1 to 86400'),
     ({**rule(), 'grace': 0}, 'grace', 'from 0.1 to 60'),
-    ({**rule(), 'grace': 61}, 'grace', 'from 0.1 to 60'),
     ({**rule(), 'limit': 0}, 'limit', 'at least 1'),
     ({**rule(), 'limit': 1.5}, 'limit', 'an integer'),
     ({**rule(), 'limit': 201}, 'limit', 'from 1 to 200'),
@@ -84,16 +81,13 @@ def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
     ({'rules': [{'kinds': ['silent'], 'steps': GOOD['steps']}]}, 'rules[0].component', 'missing'),
     (rule(component='player'), 'rules[0].component', 'no full name'),
     (rule(component='/*'), 'rules[0].component', 'patterns are not allowed'),
-    (rule(component='/(.*)'), 'rules[0].component', 'patterns are not allowed'),
     (rule(component=['/player']), 'rules[0].component', 'expected a text'),
     (rule(component='/' + 'a' * 1000), 'rules[0].component', 'no full name'),
     (rule(kinds='silent'), 'rules[0].kinds', 'expected a list'),
     (rule(kinds=[]), 'rules[0].kinds', 'at least one'),
     (rule(kinds=[1]), 'rules[0].kinds', 'expected texts'),
     (rule(kinds=['dead']), 'rules[0].kinds', 'choose from silent, topic silent'),
-    (rule(kinds=['stranger']), 'rules[0].kinds', 'choose from'),
     (rule(kinds=['all silent']), 'rules[0].kinds', 'blames no component'),
-    (rule(kinds=['busy machine']), 'rules[0].kinds', 'blames no component'),
     (rule(steps=[]), 'rules[0].steps', 'at least one'),
     (rule(steps=['stop']), 'rules[0].steps[0]', 'expected keys'),
     (rule(steps=[{'call': '/a'}] * 11), 'rules[0].steps', 'at most 10'),
@@ -104,7 +98,6 @@ def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
     (step(call='reset'), 'rules[0].steps[0].call', 'no full name'),
     (step(call='/self_awareness/clear'), 'rules[0].steps[0].call', 'it is the monitor'),
     (step(call='/self_awareness_recovery/hold'), 'rules[0].steps[0].call', 'recovery itself'),
-    (step(stop='/player'), 'rules[0].steps[0].stop', 'expected a list'),
     (step(stop=[]), 'rules[0].steps[0].stop', 'at least one'),
     (step(stop=['/player', '/player']), 'rules[0].steps[0].stop', 'twice'),
     (step(stop=['/.*']), 'rules[0].steps[0].stop', 'patterns are not allowed'),
@@ -113,7 +106,6 @@ def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
     (step(stop=['/self_awareness_manager']), 'rules[0].steps[0].stop', "monitor's nodelet"),
     (step(stop=['/self_awareness_recovery']), 'rules[0].steps[0].stop', 'recovery itself'),
     (step(stop=['/rosout']), 'rules[0].steps[0].stop', "ROS's own"),
-    (step(stop=['/roscore']), 'rules[0].steps[0].stop', 'the master'),
     (step(stop=[f'/n{i}' for i in range(6)]), 'rules[0].steps[0].stop', 'never all of it'),
     ({'rules': [GOOD, {**GOOD, 'kinds': ['slow', 'silent']}]}, 'rules', 'two rules for /player'),
     ({'rules': [{**GOOD, 'component': f'/n{i}'} for i in range(101)]}, 'rules', 'at most 100'),
@@ -131,11 +123,6 @@ def test_an_error_names_the_file_the_key_and_the_way_out(tmp_path: Path, data: A
 def test_what_is_no_such_file_is_refused_by_its_name(tmp_path: Path, text: str) -> None:
     with pytest.raises(ValueError, match='r.yaml: '):
         load(tmp_path, text)
-
-
-def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
-    with pytest.raises(OSError, match='gone.yaml'):
-        rules.load(str(tmp_path / 'gone.yaml'), MONITOR, RECOVERY)
 
 
 _VALUES = strategies.recursive(

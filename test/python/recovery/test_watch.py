@@ -65,15 +65,10 @@ def test_others_are_none(said: Any) -> None:
 
 
 @pytest.mark.parametrize('then, now', [('silent', 'slow'), ('slow', 'silent')])
-def test_the_alarm_says_what_is_wrong_and_not_the_incident_that_it_has_opened_again(
-        then: str, now: str) -> None:
-    again = incident(kind=then)
+def test_the_alarm_says_what_is_wrong_now(then: str, now: str) -> None:
+    """And not the incident that it has opened again; it may change while the alarm stands."""
     said = status(suspect('/player', now), kind=now)
-    assert faults(watch([again], said), 0.0) == [f'/player {now}']
-
-
-@pytest.mark.parametrize('then, now', [('silent', 'slow'), ('slow', 'silent')])
-def test_what_is_wrong_may_change_while_the_alarm_stands(then: str, now: str) -> None:
+    assert faults(watch([incident(kind=then)], said), 0.0) == [f'/player {now}']
     said = status(suspect('/player', now), kind=then)
     assert faults(watch(said=said), 0.0) == [f'/player {now}']
     both = status(suspect('/player', now), suspect('/player', then), kind=then)
@@ -98,12 +93,10 @@ def test_it_stands_while_a_window_is_abnormal_and_names_the_component(said: Any)
 
 def test_it_does_not_stand_for_long_after_the_last_abnormal_window() -> None:
     tested = watch()
-    tested.on_status(0.4, status('/player', abnormal=False))
-    fault, = tested.faults(0.4) or []
-    assert fault.stands
-    tested.on_status(0.6, status('/player', abnormal=False))
-    fault, = tested.faults(0.6) or []
-    assert not fault.stands
+    for now, stands in ((0.4, True), (0.6, False)):
+        tested.on_status(now, status('/player', abnormal=False))
+        fault, = tested.faults(now) or []
+        assert fault.stands == stands
 
 
 def test_nothing_is_known_from_a_monitor_that_is_gone_or_has_not_settled() -> None:
@@ -165,13 +158,9 @@ def test_it_is_none_if_it_is_not_known_who_hears_whom() -> None:
         '/player silent']
 
 
-def test_who_was_named_when_the_alarm_was_raised_need_not_be_abnormal_by_itself() -> None:
-    assert faults(beside(suspect('/camera', since=100)), BESIDE_S, NOBODY_LISTENS) == [
-        '/player silent']
-
-
-def test_who_is_not_abnormal_by_itself_is_named_anew_in_every_window() -> None:
-    assert faults(beside(suspect('/camera', since=NOW)), BESIDE_S, NOBODY_LISTENS) == [
+@pytest.mark.parametrize('since', [100, NOW])
+def test_who_was_named_when_the_alarm_was_raised_or_anew_need_not_be_abnormal(since: int) -> None:
+    assert faults(beside(suspect('/camera', since=since)), BESIDE_S, NOBODY_LISTENS) == [
         '/player silent']
 
 

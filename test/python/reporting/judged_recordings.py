@@ -4,7 +4,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import List, Optional
 
-from conftest import Message, jittery_robot
+from conftest import Message, jittery_robot, write_bag
 
 from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EvidenceModel, PaperModel,
                             TrainedModel, recordings)
@@ -41,3 +41,9 @@ def judged(model: str, bag: str, detector: str = 'evidence',
     recording = recordings.read(trained, BagPart.parse(bag))
     verdicts = judge(recording.stamps, recording.ids, recording.end, recording.event_types)
     return Judged(JudgedBy(trained, model, parameters, threshold, evidence), recording, verdicts)
+
+
+def dead(model: str, folder: Path) -> Judged:
+    """Judge a recording in which the laser falls silent by a model with its graph."""
+    bag = write_bag(folder / 'dead.bag', without_laser(3000.0))
+    return judged(with_graph(model, folder / 'm'), bag)

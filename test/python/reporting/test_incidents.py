@@ -189,17 +189,6 @@ def test_a_recording_of_several_pauses(evidence_model: str, make_bag: Callable[.
     assert (laser['from_s'], laser['back_s']) == pytest.approx((30.0, 38.0), abs=0.1)
 
 
-def test_who_is_silent_to_the_end_has_stopped(evidence_model: str,
-                                              make_bag: Callable[..., str]) -> None:
-    messages = [m for m in jittery_robot(3000.0, 30.0, 3)
-                if not (m[1] == '/laser' and m[0] > 3012.0)]
-    of = judged(evidence_model, make_bag('dead.bag', messages))
-    first = incidents(of, intervals(of), 'x')[0]
-    assert '/laser' in first.headline and 'came back' not in first.headline
-    assert 'stopped sending at 12.0 s' in first.headline
-    assert {each.silence.back for each in first.silent if each.component == '/laser'} == {None}
-
-
 def test_without_a_graph_nobody_is_called_a_victim(evidence_model: str,
                                                    make_bag: Callable[..., str]) -> None:
     of = judged(evidence_model, make_bag('dead.bag', without_laser(3000.0)))

@@ -9,7 +9,7 @@ import pytest
 import rosbag
 import rospy
 from conftest import write_bag
-from judged_recordings import judged, with_graph, without_laser
+from judged_recordings import dead, judged, with_graph, without_laser
 from rosgraph_msgs.msg import Log
 
 from self_awareness import BagError, EncodingRules, last_log_lines
@@ -86,9 +86,10 @@ def test_an_incident_has_the_log_and_the_commands(evidence_model: str, bag: str,
     assert tab.get('tab_name') == '/laser: 7 to 27 s'
 
 
-def test_plotjuggler_takes_the_layout_without_a_question(evidence_model: str, make_bag) -> None:
+def test_plotjuggler_takes_the_layout_without_a_question(evidence_model: str,
+                                                         tmp_path: Path) -> None:
     """Without this version it asks; settings of bags that are missing here become 0 for good."""
-    found = section(judged(evidence_model, make_bag('b.bag', without_laser(3000.0))), 'x')
+    found = section(dead(evidence_model, tmp_path), 'x')
     layout = ElementTree.fromstring(found.details[found.incidents[0].key].next.layout)
     assert layout.tag == 'root' and layout.get('version') == '2.3.8'
     splitter, = layout.findall('tabbed_widget/Tab/Container/DockSplitter')

@@ -44,13 +44,14 @@ def test_the_ending_says_the_format(ending: str, tmp_path: Path) -> None:
 def test_a_plot_names_the_alarm_and_the_few_worst_faults(tmp_path: Path) -> None:
     from matplotlib import rc_context
     rocs = [Roc([-0.1, -0.2, -0.3], [-0.25 - 0.02 * number, -0.15]) for number in range(9)]
-    curves = [(f'fault{number}', roc) for number, roc in enumerate(rocs)]
+    curves = [(f'fault$x^{{{number}', roc) for number, roc in enumerate(rocs)]
+    title = r'$HOME/a_$x^{robot.bag'  # with dollars, and no formula
     with rc_context({'svg.fonttype': 'none'}):  # text as text
-        save_scores(str(tmp_path / 's.svg'), [scores(600)])
-        save_roc(str(tmp_path / 'r.svg'), 'ROC', [*curves, ('all together', rocs[4])],
+        save_scores(str(tmp_path / 's.svg'), [scores(600)._replace(title=title)])
+        save_roc(str(tmp_path / 'r.svg'), title, [*curves, ('all together', rocs[4])],
                  rocs[4].at(-1.0))
-    assert '/player' in (tmp_path / 's.svg').read_text()
-    legend = (tmp_path / 'r.svg').read_text()
+    plot, legend = ((tmp_path / name).read_text(encoding='utf-8') for name in ('s.svg', 'r.svg'))
+    assert '/player' in plot and title in plot and title in legend
     named = [name for name, _ in curves if f'{name}: AUC' in legend]
     worst = sorted(curves, key=lambda curve: curve[1].auc)[:3]
     assert named == sorted(name for name, _ in worst)
@@ -68,15 +69,3 @@ def test_an_abnormal_window_of_a_long_recording_is_seen(tmp_path: Path) -> None:
         in_plot = pixels[330:448, 100:1150]  # below the line of the threshold
         seen.append(int((np.abs(in_plot - (0.776, 0.184, 0.208)).max(axis=2) < 0.1).sum()))
     assert seen[0] == 0 and seen[1] > 0
-
-
-def test_a_name_with_dollars_is_no_formula(tmp_path: Path) -> None:
-    from matplotlib import rc_context
-    name = r'$HOME/a_$x^{robot.bag'
-    plot = scores(600)
-    roc = Roc([-0.1, -0.2, -0.3], [-2.0, -0.15])
-    with rc_context({'svg.fonttype': 'none'}):  # text as text
-        save_scores(str(tmp_path / 'scores.svg'), [plot._replace(title=name)])
-        save_roc(str(tmp_path / 'roc.svg'), name, [(name, roc)], roc.at(-1.0))
-    for path in tmp_path.iterdir():
-        assert name in path.read_text(encoding='utf-8')

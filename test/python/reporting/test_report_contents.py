@@ -8,7 +8,7 @@ from typing import Any, Callable
 import numpy as np
 import pytest
 from conftest import jittery_robot
-from judged_recordings import judged, with_graph, without_laser
+from judged_recordings import dead, judged, without_laser
 
 from self_awareness.reporting.report import figures, timeline
 from self_awareness.reporting.report.against import against
@@ -19,10 +19,9 @@ from self_awareness.reporting.report.section import (ALARMED, NOT_JUDGED, QUIET,
 from self_awareness.reporting.report.timeline import overview
 
 
-def test_the_summary_says_who_when_why_and_since_when(evidence_model: str, make_bag,
-                                                      tmp_path: Path) -> None:
-    bag = make_bag('dead.bag', without_laser(3000.0))
-    found = section(judged(with_graph(evidence_model, tmp_path / 'm'), bag), 'x')
+def test_the_summary_and_the_details_say_who_when_and_why(evidence_model: str,
+                                                          tmp_path: Path) -> None:
+    found = section(dead(evidence_model, tmp_path), 'x')
     assert found.summary.state == ALARMED
     assert (found.summary.headline
             == '/laser (/scan) fell silent at 12.0 s, and came back at 20.0 s.')
@@ -35,11 +34,6 @@ def test_the_summary_says_who_when_why_and_since_when(evidence_model: str, make_
     assert answers['Victims'] == '/slam' and 'Also named' not in answers
     assert 'overdue' not in ' '.join(answers.values())
 
-
-def test_an_incident_has_its_suspects_delays_and_graph(evidence_model: str, make_bag,
-                                                       tmp_path: Path) -> None:
-    bag = make_bag('dead.bag', without_laser(3000.0))
-    found = section(judged(with_graph(evidence_model, tmp_path / 'm'), bag), 'x')
     incident = found.incidents[0]
     alarm, details = incident.main, found.details[incident.key]
     assert incident.level == ALARM and 12.0 < alarm.start < 13.0 and alarm.cleared
@@ -77,10 +71,9 @@ def test_a_rate_has_counts_and_what_is_usual(evidence_model: str, make_bag) -> N
     assert drawn['layout']['shapes'][0]['y0'] == 36.0
 
 
-def test_lanes_and_score_agree(evidence_model: str, make_bag) -> None:
+def test_lanes_and_score_agree(evidence_model: str, tmp_path: Path) -> None:
     """The report computes no evidence of its own: the largest of a stretch is its score."""
-    found = overview(judged(evidence_model, make_bag('dead.bag', without_laser(3000.0))),
-                     ['/slam'])
+    found = overview(dead(evidence_model, tmp_path), ['/slam'])
     assert found.lanes.names[0] == '/slam' and found.lanes.left_out == 0
     np.testing.assert_allclose(found.lanes.shares.max(axis=0), -found.timeline.lowest, rtol=1e-6)
     assert set(found.lanes.names) == {'/slam', '/laser', '/battery'}
@@ -107,11 +100,7 @@ def test_long_recordings_are_drawn_in_stretches_that_lose_no_extreme(
     for index, (begin, end) in enumerate(zip(begins, [*begins[1:], len(of.verdicts.start)])):
         assert drawn.lowest[index] == of.verdicts.score[begin:end].min()
         assert drawn.abnormal[index] == of.verdicts.abnormal[begin:end].any()
-
-
-def test_with_many_components_there_are_fewer_stretches(evidence_model: str, make_bag,
-                                                        monkeypatch) -> None:
-    of = judged(evidence_model, make_bag('dead.bag', without_laser(3000.0)))
+    # With many components, there are fewer.
     monkeypatch.setattr(timeline, 'MOST_CELLS', 1000)
     assert len(timeline.cut(of.verdicts, 20)) <= 52
     assert len(timeline.cut(of.verdicts, 10_000)) >= 1

@@ -15,7 +15,7 @@ from judged_recordings import judged, with_graph, without_laser
 from self_awareness.commands import score, train
 from self_awareness.reporting.report import figures
 from self_awareness.reporting.report.against import Histogram
-from self_awareness.reporting.report.page import save_page, save_report, script_json
+from self_awareness.reporting.report.page import save_page, save_report
 from self_awareness.reporting.report.section import section
 from self_awareness.reporting.report.timeline import MOST_LANES
 from self_awareness.reporting.report.unjudged import MOST_NAMES
@@ -46,6 +46,9 @@ def test_score_writes_a_report_of_each_recording(evidence_model: str, make_bag, 
     page = report.read_text()
     assert len(page) < MOST_BYTES
     assert page.count('<section ') == 2
+    without_plotly = re.sub(r'<script>.*?</script>', '', page, flags=re.S)
+    assert not re.search(r'(src|href)="(?!#|data:)', without_plotly), 'it needs no network'
+    assert "default-src 'none'" in page
     assert '/laser (/scan) fell silent at 12.0 s, and came back at 20.0 s.' in page
     assert 'Nothing abnormal.' in page
     # The report and the text agree.
@@ -54,16 +57,6 @@ def test_score_writes_a_report_of_each_recording(evidence_model: str, make_bag, 
     interval, = [each for each in data_of(page)['sections'][0]['incidents'].values()
                  if [f'{time:.1f}' for time in each['range']] == [start, end]]
     assert len(interval['figures']) >= 2
-
-
-def test_it_needs_no_network(evidence_model: str, make_bag, tmp_path: Path) -> None:
-    report = tmp_path / 'r.html'
-    bag = make_bag('dead.bag', without_laser(3000.0))
-    assert score.main([bag, '--model', evidence_model, '--report', str(report)]) == 0
-    page = report.read_text()
-    without_plotly = re.sub(r'<script>.*?</script>', '', page, flags=re.S)
-    assert not re.search(r'(src|href)="(?!#|data:)', without_plotly)
-    assert "default-src 'none'" in page
 
 
 @pytest.mark.parametrize('detector', ['evidence', 'paper'])
@@ -127,30 +120,17 @@ def test_normal_operation_draws_no_walls(evidence_model: str, make_bag) -> None:
     assert {value for trace in score for value in trace['y']} == {-1.0}
 
 
-def test_json_cannot_end_its_element() -> None:
-    text = script_json({'</script><!--': ['&', 1.5]})
-    assert not set('<>&') & set(text)
-    assert json.loads(text) == {'</script><!--': ['&', 1.5]}
-    with pytest.raises(ValueError):
-        script_json(float('nan'))
-
-
-@pytest.mark.parametrize('name', ['report.pdf', 'report', 'html'])
-def test_another_ending_is_refused(evidence_model: str, make_bag, tmp_path: Path, name: str,
-                                   capsys) -> None:
-    bag = make_bag('n.bag', jittery_robot(7000.0, 30.0, 4))
-    assert score.main([bag, '--model', evidence_model, '--report', str(tmp_path / name)]) == 2
-    assert '.html' in capsys.readouterr().err and os.listdir(tmp_path) == ['n.bag']
-
-
-def test_without_plotly_it_says_what_to_install(evidence_model: str, make_bag, tmp_path: Path,
-                                                monkeypatch, capsys) -> None:
+@pytest.mark.parametrize('name, code, told', [
+    ('report.pdf', 2, '.html'), ('report', 2, '.html'), ('html', 2, '.html'),
+    ('without_plotly.html', 1, 'apt install python3-plotly')])
+def test_what_cannot_be_written_is_told_before(
+        evidence_model: str, make_bag, tmp_path: Path, name: str, code: int, told: str,
+        monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     bag = make_bag('n.bag', jittery_robot(7000.0, 30.0, 4))
     monkeypatch.setattr('importlib.util.find_spec', lambda name: None)
-    arguments = [bag, '--model', evidence_model, '--report', str(tmp_path / 'r.html')]
-    assert score.main(arguments) == 1
+    assert score.main([bag, '--model', evidence_model, '--report', str(tmp_path / name)]) == code
     captured = capsys.readouterr()
-    assert 'apt install python3-plotly' in captured.err and captured.out == ''
+    assert told in captured.err and captured.out == '' and os.listdir(tmp_path) == ['n.bag']
 
 
 def test_any_number_of_event_types_is_a_bounded_page(
@@ -192,7 +172,10 @@ def test_eval_is_allowed_to_a_plotly_that_cannot_do_without(version: str, allowe
     plotly = pytest.importorskip('plotly')
     monkeypatch.setattr(plotly, '__version__', version)
     path = tmp_path / 'page.html'
-    save_page(str(path), 'base.html', {})
+    save_page(str(path), 'base.html', {'</script><!--': ['&', 1.5]})
+    assert data_of(path.read_text(encoding='utf-8')) == {'</script><!--': ['&', 1.5]}
+    with pytest.raises(ValueError):
+        save_page(str(path), 'base.html', {'value': float('nan')})
     policy, = re.findall(r'content="(default-src .*?)"', path.read_text(encoding='utf-8'))
     assert ('unsafe-eval' in policy) == allowed
 

@@ -96,12 +96,6 @@ INSTANTIATE_TEST_SUITE_P(Chunks, BagWriterTest,
                          ::testing::Values(BagWriter::Chunks::kOfOneMessage,
                                            BagWriter::Chunks::kCompressed));
 
-TEST_F(BagWriterTest, ABagWithoutMessagesIsOne) {
-  BagWriter(path_, BagWriter::Chunks::kCompressed).close();
-  const rosbag::Bag bag(path_, rosbag::bagmode::Read);
-  EXPECT_EQ(rosbag::View(bag).size(), 0U);
-}
-
 TEST_F(BagWriterTest, SameMessagesMakeASmallFileWhereTheyAreCompressed) {
   for (const BagWriter::Chunks chunks :
        {BagWriter::Chunks::kOfOneMessage, BagWriter::Chunks::kCompressed}) {
@@ -114,6 +108,8 @@ TEST_F(BagWriterTest, SameMessagesMakeASmallFileWhereTheyAreCompressed) {
     writer.close();
   }
   EXPECT_LT(10 * fs::file_size(path_ + "1"), fs::file_size(path_ + "0"));
+  BagWriter(path_, BagWriter::Chunks::kCompressed).close();
+  EXPECT_EQ(rosbag::View(rosbag::Bag(path_, rosbag::bagmode::Read)).size(), 0U) << "of none";
 }
 
 }  // namespace

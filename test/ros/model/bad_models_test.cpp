@@ -37,8 +37,8 @@ class BadModelsTest : public ModelFileTest {
   std::string errorOf(const std::string& bytes) {
     bag_bytes::writeFile(path("bad"), bytes);
     const std::string error = modelError(path("bad"));
-    EXPECT_TRUE(error.empty() || error.rfind(path("bad") + ": ", 0) == 0) << error;
-    EXPECT_EQ(error.find("memory"), std::string::npos) << error;
+    EXPECT_TRUE(error.empty() || begins(error, path("bad") + ": "));
+    EXPECT_FALSE(has(error, "memory")) << error;
     return error;
   }
 };
@@ -92,15 +92,44 @@ TEST_F(BadModelsTest, NumbersThatCannotBeAreRefused) {
   }
   EXPECT_NE(
       damagedModel([](TrainedModel& m) { m.findings.at(0).parts.at(0).evidence.at(0) = -1; }), "");
+  EXPECT_NE(damagedModel([](TrainedModel& m) { m.paper_calibration.emplace().threshold = kNan; }),
+            "");
+  EXPECT_NE(damagedPart("/model", [](std::vector<std::uint8_t>& bytes) { bytes.push_back(0); }),
+            "");
+}
+
+TEST_F(BadModelsTest, PartsThatDoNotFitEachOtherAreRefused) {
+  const auto error = [this](const std::function<void(TrainedModel&)>& change) {
+    return damagedModel(change);
+  };
+  const std::string file = path("damaged") + ": a damaged model file: ";
+  const std::string findings = file + "its findings do not fit its tracks";
+  EXPECT_EQ(error([](auto& m) { m.findings.at(1).parts.at(0).evidence.pop_back(); }), findings);
+  EXPECT_EQ(error([](auto& m) { m.findings.at(1).parts.at(0).longest_gaps = {1}; }), findings);
+  EXPECT_EQ(error([](auto& m) { m.findings.at(1).said.pop_back(); }), findings);
+  EXPECT_EQ(error([](auto& m) { m.findings.at(0).said.at(0) = core::evidence::Said{3}; }),
+            file + "its findings say what this version does not know");
+  for (const std::size_t tracks : {0, 1, 1000}) {
+    EXPECT_TRUE(begins(error([&](auto& m) { m.calibration->limits.tracks.assign(tracks, 1); }),
+                       file + "its limits are not those of its evidence"));
+  }
+  EXPECT_EQ(error([](auto& m) { m.watched.tracks.at(0).to = 2; }),
+            file + "it watches an event type that it does not have");
+  EXPECT_EQ(error([](auto& m) { m.tuning.least_effect = -0.001; }),
+            file + "least_effect must be from 0 to 1000 s, not -0.001");
+  EXPECT_NE(error([](auto& m) { m.statistics = core::paper::DelayStatistics({}); }), "");
 }
 
 TEST_F(BadModelsTest, WhatWouldTakeForeverIsRefused) {
-  EXPECT_NE(damagedModel([](TrainedModel& m) { m.window = 1; }), "");
-  EXPECT_NE(damagedModel([](TrainedModel& m) { m.window = 100000 * kSecond; }), "");
+  for (const std::int64_t window :
+       {-kSecond, std::int64_t{0}, std::int64_t{1}, 100000 * kSecond}) {
+    EXPECT_NE(damagedModel([&](TrainedModel& m) { m.window = window; }), "") << window;
+  }
   const auto excluding = [this](const std::string& pattern) {
     return damagedModel([&](TrainedModel& m) { m.encoding.exclude_topics = {pattern}; });
   };
   EXPECT_EQ(excluding("(([a-z/_])*)*#"), "");
+  EXPECT_NE(excluding("("), "");
   EXPECT_NE(excluding("(((a{1,100}){1,100}){1,100}){1,100}"), "");
   EXPECT_NE(damagedModel([](TrainedModel& m) {
               for (std::size_t k = 0; k <= kMostEventTypes; ++k) {
@@ -152,16 +181,7 @@ TEST_F(BadModelsTest, RecordingsThatCannotBeAreRefused) {
 TEST_F(BadModelsTest, WhatIsThereTwiceIsRefused) {
   EXPECT_NE(damagedModel([](TrainedModel& m) { m.watched.tracks.at(1) = m.watched.tracks.at(0); }),
             "");
-  EXPECT_NE(damagedPart("/model",
-                        [](std::vector<std::uint8_t>& bytes) {
-                          const std::string text(bytes.begin(), bytes.end());
-                          const std::size_t at = text.find("fewest_gaps");
-                          ASSERT_NE(at, std::string::npos);
-                          const std::string other = "fewest_busy";
-                          std::copy(other.begin(), other.end(),
-                                    bytes.begin() + static_cast<std::ptrdiff_t>(at));
-                        }),
-            "");
+  EXPECT_NE(damagedPart("/model", rename("fewest_gaps", "fewest_busy")), "");
 }
 
 TEST_F(BadModelsTest, WhatAnotherProgramChangedIsRefused) {
@@ -181,28 +201,16 @@ TEST_F(BadModelsTest, WhatAnotherProgramChangedIsRefused) {
       }
     }
     changed.close();
-    EXPECT_EQ(modelError(path("changed")).rfind(path("changed") + ": ", 0), 0U) << topic;
+    EXPECT_TRUE(begins(modelError(path("changed")), path("changed") + ": ")) << topic;
   }
 }
 
 TEST_F(BadModelsTest, NoModelIsWrittenThatCannotBeRead) {
   TrainedModel model = calibratedModel();
   model.recordings.at(0).bag = "a\x1B[2J.bag";
-  try {
-    saveModel(model, path("unreadable"));
-    FAIL();
-  } catch (const ModelFileError& error) {
-    EXPECT_EQ(std::string(error.what()).rfind(path("unreadable") + ": ", 0), 0U) << error.what();
-  }
+  EXPECT_TRUE(begins(problemOf<ModelFileError>([&] { saveModel(model, path("unreadable")); }),
+                     path("unreadable") + ": "));
   EXPECT_FALSE(boost::filesystem::exists(path("unreadable")));
-}
-
-TEST_F(BadModelsTest, TextsThatNoTerminalShouldGetAreRefused) {
-  for (const char* text : {"a\x1B[2J.bag", "/a\xE2\x80\xAE", "a\rb", "a\x07", "gr\xFC\xDF"}) {
-    EXPECT_NE(damagedModel([&](TrainedModel& m) { m.recordings.at(0).bag = text; }), "");
-    EXPECT_NE(damagedModel([&](TrainedModel& m) { m.calibration->method = text; }), "");
-    EXPECT_NE(damagedModel([&](TrainedModel& m) { m.graph.connect("/a", text, "/b"); }), "");
-  }
 }
 
 }  // namespace

@@ -31,10 +31,8 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   ASSERT_GE(model.calibration->limits.tracks.size(), 3U);
   saveModel(model, path("m"));
   const TrainedModel loaded = loadModel(path("m"));
-  EXPECT_TRUE(loaded.evidence[0] == model.evidence[0]);
-  EXPECT_TRUE(loaded.evidence[1] == model.evidence[1]);
-  EXPECT_TRUE(loaded.watched.halves[0] == model.watched.halves[0]);
-  EXPECT_TRUE(loaded.watched.halves[1] == model.watched.halves[1]);
+  EXPECT_TRUE(loaded.evidence == model.evidence);
+  EXPECT_TRUE(loaded.watched.halves == model.watched.halves);
   ASSERT_EQ(loaded.watched.tracks.size(), model.watched.tracks.size());
   for (std::size_t track = 0; track < loaded.watched.tracks.size(); ++track) {
     EXPECT_EQ(loaded.watched.tracks[track].channel, model.watched.tracks[track].channel);
@@ -56,25 +54,6 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   EXPECT_EQ(loaded.calibration->budget, 0.25);
   EXPECT_EQ(loaded.calibration->windows, 1234U);
   EXPECT_EQ(loaded.calibration->recordings.at(0).bag, "normal.bag");
-  EXPECT_FALSE(loadModel([this] {
-                 saveModel(someModel(), path("bare"));
-                 return path("bare");
-               }())
-                   .limits());
-}
-
-TEST_F(ModelFileTest, HowLongTheMachineStoodStillComesBack) {
-  TrainedModel model = someModel();
-  core::evidence::Statistics::Recording recording = model.evidence[0].recordings().at(0);
-  ++recording.start;
-  recording.longest_stall = 1200000000;
-  model.evidence[0].addRecording(recording);
-  model.watched.halves[0].addRecording(recording);
-  saveModel(model, path("m"));
-  const TrainedModel loaded = loadModel(path("m"));
-  EXPECT_TRUE(loaded.evidence[0] == model.evidence[0]);
-  EXPECT_EQ(loaded.evidence[0].recordings().at(0).longest_stall, 0);
-  EXPECT_EQ(loaded.evidence[0].recordings().at(1).longest_stall, 1200000000);
 }
 
 TEST_F(ModelFileTest, PairsThatWereLeftOutForGoodComeBackAsSuch) {
@@ -114,17 +93,8 @@ TEST_F(ModelFileTest, WhatTheTrainingShowedComesBackAsItWasSaved) {
         EXPECT_EQ(found.parts[part].longest_gaps, saved.parts[part].longest_gaps);
       }
     }
-    // Recordings of the training, of each half one.
-    for (const core::evidence::Statistics& half : loaded.watched.halves) {
-      ASSERT_EQ(half.recordings().size(), 1U);
-      EXPECT_EQ(half.recordings()[0].end, 149 * 37000000LL);
-      EXPECT_EQ(half.recordings()[0].longest_silence, 37000000);
-      EXPECT_EQ(half.recordings()[0].events, (std::vector<std::uint64_t>{100, 50}));
-      EXPECT_EQ(half.recordings()[0].longest_gaps,
-                (std::vector<std::int64_t>{2 * 37000000, 3 * 37000000}));
-    }
+    EXPECT_TRUE(loaded.watched.halves == model.watched.halves);
   }
-  EXPECT_TRUE(model.watched.halves[0] == loadModel(path("m")).watched.halves[0]);
 }
 
 TEST_F(ModelFileTest, WhatSpeaksForRelationsComesBackAsItWasSaved) {
@@ -143,22 +113,6 @@ TEST_F(ModelFileTest, WhatSpeaksForRelationsComesBackAsItWasSaved) {
     EXPECT_EQ(relation.starts, 2U);
     EXPECT_EQ(relation.starts_needed, 3U);
   }
-}
-
-TEST_F(ModelFileTest, FindingsThatDoNotFitTheTracksAreRefused) {
-  const std::string file = path("damaged") + ": a damaged model file: its findings ";
-  using Findings = core::evidence::LimitFinder::Recording;
-  for (const auto change :
-       std::vector<void (*)(Findings&)>{[](Findings& f) { f.parts.at(0).evidence.pop_back(); },
-                                        [](Findings& f) { f.parts.at(0).longest_gaps = {1}; },
-                                        [](Findings& f) { f.said.pop_back(); }}) {
-    EXPECT_EQ(damagedModel([change](TrainedModel& model) { change(model.findings.at(1)); }),
-              file + "do not fit its tracks");
-  }
-  EXPECT_EQ(damagedModel([](TrainedModel& model) {
-              model.findings.at(0).said.at(0) = static_cast<core::evidence::Said>(3);
-            }),
-            file + "say what this version does not know");
 }
 
 TEST_F(ModelFileTest, DamagedPairsAreRefused) {
@@ -182,25 +136,6 @@ TEST_F(ModelFileTest, DamagedPairsAreRefused) {
   EXPECT_NE(error(1, 0, {1}, {2}), "") << "it has counts of this pair";
 }
 
-TEST_F(ModelFileTest, AnImpossibleTuningIsRefused) {
-  EXPECT_EQ(damagedModel([](TrainedModel& m) { m.tuning.least_effect = -0.001; }),
-            path("damaged") +
-                ": a damaged model file: least_effect must be from 0 to 1000 s, not -0.001");
-}
-
-TEST_F(ModelFileTest, ImpossibleTracksAreRefused) {
-  EXPECT_EQ(
-      damagedModel([](TrainedModel& m) { m.watched.tracks.at(0).to = 2; }),
-      path("damaged") + ": a damaged model file: it watches an event type that it does not have");
-}
-
-/// Gives a text another name of the same length, wherever it is or the first time.
-void rename(std::vector<std::uint8_t>& bytes, const std::string& text, const std::string& name) {
-  const auto at = std::search(bytes.begin(), bytes.end(), text.begin(), text.end());
-  ASSERT_NE(at, bytes.end()) << text;
-  std::copy(name.begin(), name.end(), at);
-}
-
 TEST_F(ModelFileTest, WhatThisVersionDoesNotKnowIsNotWatchedAndAllElseIs) {
   const TrainedModel whole = calibratedModel();
   std::string name = channelName(whole.watched.tracks.at(1));
@@ -208,9 +143,7 @@ TEST_F(ModelFileTest, WhatThisVersionDoesNotKnowIsNotWatchedAndAllElseIs) {
   std::string unknown = name;
   unknown.back() = '?';
   ASSERT_EQ(channelName(whole.watched.tracks.at(0)), channelName(whole.watched.tracks.at(1)));
-  ASSERT_EQ(damagedPart("/model",
-                        [&](std::vector<std::uint8_t>& bytes) { rename(bytes, name, unknown); }),
-            "");
+  ASSERT_EQ(damagedPart("/model", rename(name, unknown)), "");
   const TrainedModel model = loadModel(path("damaged"));
   EXPECT_EQ(model.left_out, (std::set<std::string>{unknown.substr(1)}));
   ASSERT_EQ(model.watched.tracks.size() + 1, whole.watched.tracks.size());
@@ -232,24 +165,8 @@ TEST_F(ModelFileTest, WhatThisVersionDoesNotKnowIsNotWatchedAndAllElseIs) {
 }
 
 TEST_F(ModelFileTest, OfATuningWhatIsMissingHasItsDefaultAndWhatIsUnknownIsLeftOut) {
-  ASSERT_EQ(damagedPart("/model",
-                        [](std::vector<std::uint8_t>& bytes) {
-                          rename(bytes, "fewest_gaps", "fewest_gape");
-                        }),
-            "");
+  ASSERT_EQ(damagedPart("/model", rename("fewest_gaps", "fewest_gape")), "");
   EXPECT_TRUE(loadModel(path("damaged")).tuning == core::evidence::Tuning());
-}
-
-TEST_F(ModelFileTest, LimitsOfAnotherModelAreRefused) {
-  for (const std::size_t tracks : {0, 1, 1000}) {
-    const std::string error = damagedModel(
-        [&](TrainedModel& model) { model.calibration->limits.tracks.assign(tracks, 1); });
-    EXPECT_EQ(error.rfind(path("damaged") +
-                              ": a damaged model file: its limits are not those of its evidence",
-                          0),
-              0U)
-        << error;
-  }
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 #pragma once
 
-#include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include <boost/filesystem.hpp>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -13,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "../../in_folder.h"
+#include "../../problem.h"
 #include "core/paper/delay_trainer.h"
 #include "ros/model/model_parts.h"
 #include "self_awareness/ModelPart.h"
@@ -24,24 +25,10 @@
 namespace self_awareness::ros1 {
 
 /// Model files in a folder of their own.
-class ModelFileTest : public testing::Test {
+class ModelFileTest : public InFolder {
  protected:
-  ModelFileTest()
-      : folder_(boost::filesystem::temp_directory_path() /
-                boost::filesystem::unique_path("self_awareness-%%%%%%%%")) {
-    boost::filesystem::create_directory(folder_);
-  }
-  ~ModelFileTest() override { boost::filesystem::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
   static std::string modelError(const std::string& file) {
-    try {
-      loadModel(file);
-    } catch (const ModelFileError& error) {
-      return error.what();
-    }
-    return "";
+    return problemOf<ModelFileError>([&] { loadModel(file); });
   }
 
   static TrainedModel someModel() {
@@ -152,6 +139,14 @@ class ModelFileTest : public testing::Test {
       }
     });
   }
+  // Gives a text in a part another name of the same length, where it comes first.
+  static auto rename(const std::string& text, const std::string& name) {
+    return [=](std::vector<std::uint8_t>& bytes) {
+      const auto at = std::search(bytes.begin(), bytes.end(), text.begin(), text.end());
+      ASSERT_NE(at, bytes.end()) << text;
+      std::copy(name.begin(), name.end(), at);
+    };
+  }
   // The same, of a model that a test has changed and nobody has looked at.
   template <typename Change>
   std::string damagedModel(Change change) {
@@ -163,8 +158,6 @@ class ModelFileTest : public testing::Test {
       bytes = written.take();
     });
   }
-
-  boost::filesystem::path folder_;
 };
 
 }  // namespace self_awareness::ros1

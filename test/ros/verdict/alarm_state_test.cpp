@@ -46,15 +46,6 @@ class AlarmStateTest : public testing::Test {
   AlarmState alarm_;
 };
 
-TEST_F(AlarmStateTest, SaysNothingBeforeTheFirstWindow) {
-  EXPECT_FALSE(alarm_.spoken());
-  EXPECT_FALSE(alarm_.stands());
-  add(verdict(Level::kOk, false));
-  EXPECT_TRUE(alarm_.spoken());
-  EXPECT_FALSE(alarm_.stands());
-  EXPECT_EQ(alarm_.message().message, "normal communication");
-}
-
 TEST_F(AlarmStateTest, NamesTheComputersThatFellSilentBeforeTheSuspects) {
   core::Verdict silent = verdict(Level::kAlarm, true, "overdue");
   silent.silent = core::Silent{{"base"}, {"/imu", "/player"}, kStart};
@@ -83,15 +74,6 @@ TEST_F(AlarmStateTest, TellsTheWindow) {
   EXPECT_EQ(said.unknown_events, 1U);
 }
 
-TEST_F(AlarmStateTest, AWindowOfWhichNothingIsSaidHasNoScore) {
-  core::Verdict silent = verdict(Level::kOk, false);
-  silent.score.reset();
-  silent.threshold.reset();
-  add(silent);
-  EXPECT_TRUE(std::isnan(alarm_.message().score));
-  EXPECT_TRUE(std::isnan(alarm_.message().threshold));
-}
-
 TEST_F(AlarmStateTest, AnAbnormalWindowWhileSettlingIsNotHeldAgainstAnyone) {
   core::Verdict settling = verdict(Level::kOk, false);
   settling.abnormal = settling.settling = true;
@@ -101,37 +83,38 @@ TEST_F(AlarmStateTest, AnAbnormalWindowWhileSettlingIsNotHeldAgainstAnyone) {
   EXPECT_EQ(alarm_.message().message, "settling");
 }
 
-TEST_F(AlarmStateTest, AnAlarmKeepsItsLastSuspectsAndEvidence) {
-  add(verdict(Level::kAlarm, true, "overdue"));
-  add(verdict(Level::kAlarm, false));
-  EXPECT_TRUE(alarm_.stands());
-  EXPECT_FALSE(alarm_.message().abnormal);
-  EXPECT_EQ(alarm_.message().evidence, "overdue");
-  ASSERT_EQ(alarm_.message().suspects.size(), 1U);
-  EXPECT_EQ(alarm_.message().suspects[0].source, "/player");
-  EXPECT_EQ(alarm_.message().message, "/player (/scan) stopped sending at 12:26:40 UTC (overdue)");
-  add(verdict(Level::kOk, true));
-  EXPECT_FALSE(alarm_.stands());
-  EXPECT_EQ(alarm_.message().evidence, "");
-  EXPECT_TRUE(alarm_.message().suspects.empty());
-}
-
-TEST_F(AlarmStateTest, AProgramNeedNotParseWords) {
+TEST_F(AlarmStateTest, AnAlarmKeepsWhatItSaysUntilItIsOver) {
   const SelfAwareness& said = alarm_.message();
+  EXPECT_FALSE(alarm_.spoken() || alarm_.stands()) << "before the first window";
+  core::Verdict empty = verdict(Level::kOk, false);
+  empty.score.reset();
+  empty.threshold.reset();
+  add(empty);
+  EXPECT_TRUE(alarm_.spoken());
+  EXPECT_TRUE(std::isnan(said.score) && std::isnan(said.threshold));
   add(verdict(Level::kOk, false));
+  EXPECT_EQ(said.message, "normal communication");
   EXPECT_EQ(said.alarm, 0U);
   EXPECT_EQ(said.kind + said.component + said.reason, "");
   add(verdict(Level::kAlarm, true, "overdue"));
   const std::uint64_t id = said.alarm;
   EXPECT_EQ(id, alarm_.standing()->id);
   EXPECT_EQ(said.kind, SelfAwareness::SILENT);
-  EXPECT_EQ(said.component, "/player");
   EXPECT_EQ(said.reason, "silent for 1 s");
   add(verdict(Level::kAlarm, false));
+  EXPECT_TRUE(alarm_.stands());
+  EXPECT_FALSE(said.abnormal);
   EXPECT_EQ(said.alarm, id);
   EXPECT_EQ(said.component, "/player");
+  EXPECT_EQ(said.evidence, "overdue");
+  ASSERT_EQ(said.suspects.size(), 1U);
+  EXPECT_EQ(said.suspects[0].source, "/player");
+  EXPECT_EQ(said.message, "/player (/scan) stopped sending at 12:26:40 UTC (overdue)");
   add(verdict(Level::kOk, true));
+  EXPECT_FALSE(alarm_.stands());
   EXPECT_EQ(said.alarm, id) << "that is over";
+  EXPECT_EQ(said.evidence, "");
+  EXPECT_TRUE(said.suspects.empty());
   add(verdict(Level::kOk, false));
   EXPECT_EQ(said.alarm, 0U);
   EXPECT_EQ(said.kind + said.component + said.reason, "");

@@ -116,16 +116,13 @@ TEST_F(ComponentsTest, NobodyOfTheGraphIsUnlisted) {
   EXPECT_EQ(all.at("/viewer").not_watched, "it publishes nothing");
   EXPECT_EQ(all.at("/viewer").age, -1);
   EXPECT_EQ(all.at("/player").not_watched, "");
-}
-
-TEST_F(ComponentsTest, NamesStrangersAsAcceptTakesThem) {
   state_.strangers.push_back({"/stranger", "/new", 7});
   const self_awareness::Components message = toComponents(state_, nullptr, encoder_);
   EXPECT_EQ(message.model, "robot.model");
   ASSERT_EQ(message.strangers.size(), 1U);
   EXPECT_EQ(message.strangers[0].component, "/stranger");
   EXPECT_EQ(message.strangers[0].topic, "/new");
-  EXPECT_EQ(message.strangers[0].kind, self_awareness::SelfAwareness::STRANGER);
+  EXPECT_EQ(message.strangers[0].kind, SelfAwareness::STRANGER) << "as ~accept takes them";
 }
 
 }  // namespace

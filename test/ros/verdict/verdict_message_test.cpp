@@ -54,17 +54,14 @@ TEST_F(VerdictMessageTest, TellsTheSilence) {
   EXPECT_EQ(message.usual_longest, 0.09);
 }
 
-TEST_F(VerdictMessageTest, ADeathThatIsCountedInRequestsHasASilence) {
-  core::Reason reason;
-  reason.kind = Kind::kSilent;
-  reason.unit = core::unit::kRequests;
-  reason.value = 3;
-  EXPECT_TRUE(std::isnan(message(0, reason).silence)) << "it was not heard so far";
-  reason.silence = 1.5;
-  EXPECT_EQ(message(0, reason).silence, 1.5);
-}
-
-TEST_F(VerdictMessageTest, ASuspectThatIsNotSilentHasNoSilence) {
+TEST_F(VerdictMessageTest, OnlyWhoIsSilentHasASilenceAlsoOneThatIsCountedInRequests) {
+  core::Reason requests;
+  requests.kind = Kind::kSilent;
+  requests.unit = core::unit::kRequests;
+  requests.value = 3;
+  EXPECT_TRUE(std::isnan(message(0, requests).silence)) << "it was not heard so far";
+  requests.silence = 1.5;
+  EXPECT_EQ(message(0, requests).silence, 1.5);
   for (const Kind kind : {Kind::kSlow, Kind::kFast}) {
     core::Reason reason;
     reason.kind = kind;

@@ -10,7 +10,7 @@
 
 namespace self_awareness::core {
 
-/// What somebody takes as normal from now on (docs/accept.md): it is no evidence any more.
+/// What somebody takes as normal from now on (docs/live.md): it is no evidence any more.
 struct Acceptance {
   /// How much of what it names is accepted. A fault seldom comes alone: who is slow is late, too.
   enum class Extent {

@@ -41,7 +41,7 @@ struct Occurrence {
 /// An alarm as its own reasons tell it.
 Occurrence occurrenceOf(const Alarm& alarm);
 
-/// All that one cause has done: alarms and suspicions, with their victims (docs/incidents.md).
+/// All that one cause has done: alarms and suspicions, with their victims (docs/alarm.md).
 struct Incident {
   /// Components that are kept in each of its lists, at most so many.
   static constexpr std::size_t kMostNamed = 100;

@@ -32,7 +32,7 @@ struct Judgement {
   /// Set if everybody, or everybody on some computers, should have been heard by now; not told by
   /// the paper's detector.
   std::optional<Silent> silent;
-  /// Components that are off together, as somebody has accepted, in order (docs/accept.md).
+  /// Components that are off together, as somebody has accepted, in order (docs/live.md).
   std::vector<std::string> mode;
   /// If they were asked for; the most likely first. After kMostSuspects, further components whose
   /// evidence alone is abnormal may follow.

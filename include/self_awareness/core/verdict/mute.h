@@ -13,7 +13,7 @@
 
 namespace self_awareness::core {
 
-/// What somebody does not want to be told for a while (docs/mute.md). It is judged as before.
+/// What somebody does not want to be told for a while (docs/live.md). It is judged as before.
 struct Mute {
   std::string component;         ///< a name, or its begin and a `*`; empty: all
   std::string topic;             ///< likewise

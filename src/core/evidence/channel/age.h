@@ -4,8 +4,8 @@
 
 namespace self_awareness::core::evidence {
 
-/// Age (docs/attributes.md): messages whose stamps are older than usual. Evidence is by how much
-/// [s], of the last two messages the lesser.
+/// Age (docs/method.md, section 3.10): messages whose stamps are older than usual. Evidence is by
+/// how much [s], of the last two messages the lesser.
 class Age : public Channel {
  public:
   std::string name() const override { return "age"; }

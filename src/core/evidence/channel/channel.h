@@ -136,7 +136,7 @@ class Channel {
   /// What its tracks say is wrong, in general; explain() knows it exactly. Who accepts it accepts
   /// them (Acceptance::extent()).
   virtual Kind kind() const = 0;
-  /// Whether it looks at attributes of messages (docs/attributes.md).
+  /// Whether it looks at attributes of messages (docs/method.md, section 3.10).
   virtual bool isOfAttributes() const { return false; }
   /// Whether it has a small share of the false alarms by itself, so that the limits of others do
   /// not depend on it (docs/method.md, section 5.2).

@@ -4,8 +4,8 @@
 
 namespace self_awareness::core::evidence {
 
-/// Frozen (docs/attributes.md): messages with the same bytes again and again. Evidence is for how
-/// long [s].
+/// Frozen (docs/method.md, section 3.10): messages with the same bytes again and again. Evidence
+/// is for how long [s].
 class Frozen : public Channel {
  public:
   std::string name() const override { return "frozen"; }

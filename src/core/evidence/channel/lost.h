@@ -4,8 +4,8 @@
 
 namespace self_awareness::core::evidence {
 
-/// Lost (docs/attributes.md): numbers of messages that are missing. Evidence is a sum: each loss
-/// adds to it, and each message that came takes from it.
+/// Lost (docs/method.md, section 3.10): numbers of messages that are missing. Evidence is a sum:
+/// each loss adds to it, and each message that came takes from it.
 class Lost : public Channel {
  public:
   std::string name() const override { return "lost"; }

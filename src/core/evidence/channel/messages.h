@@ -13,8 +13,8 @@
 
 namespace self_awareness::core::evidence {
 
-/// What the channels of attributes have in common (docs/attributes.md): each looks at the messages
-/// of one event type after the other, and at nothing else.
+/// What the channels of attributes have in common (docs/method.md, section 3.10): each looks at
+/// the messages of one event type after the other, and at nothing else.
 
 /// Whether training knows enough messages of an event type, and nearly all of its events.
 inline bool knowsMessages(const Choice& choice, EventId id) {

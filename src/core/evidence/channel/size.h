@@ -4,8 +4,8 @@
 
 namespace self_awareness::core::evidence {
 
-/// Size (docs/attributes.md): messages that are smaller or larger than all in training. Evidence
-/// is by how many octaves, of the last three messages the least.
+/// Size (docs/method.md, section 3.10): messages that are smaller or larger than all in training.
+/// Evidence is by how many octaves, of the last three messages the least.
 class Size : public Channel {
  public:
   std::string name() const override { return "size"; }

@@ -6,8 +6,9 @@
 namespace self_awareness::core::evidence {
 
 /// By how much the messages of one event type are older than they have been of late
-/// (docs/attributes.md). The clocks of two computers may differ, and drift apart: so only what
-/// changes within a minute or two counts; and as ages come in classes, no step to the next one.
+/// (docs/method.md, section 3.10). The clocks of two computers may differ, and drift apart: so
+/// only what changes within a minute or two counts; and as ages come in classes, no step to the
+/// next one.
 class AgeLevel {
  public:
   /// What is remembered of ages: those of the last span, and of the one before [ns]; of old ages,

@@ -11,7 +11,7 @@
 namespace self_awareness::core::evidence {
 
 /// Which event types came on which robot: a component that only some robots have is missed on none
-/// of the others (docs/fleet.md). Recordings that do not name their robot are of one more.
+/// of the others (docs/robots.md). Recordings that do not name their robot are of one more.
 class Robots {
  public:
   /// Adds the recordings of a training, or of one half of it.

@@ -15,7 +15,7 @@
 
 namespace self_awareness::core::evidence {
 
-/// Knows what is no evidence: what somebody has accepted (docs/accept.md).
+/// Knows what is no evidence: what somebody has accepted (docs/live.md).
 class Accepted {
  public:
   /// @param heard event types by id, those of the model first; may grow. None: those that the

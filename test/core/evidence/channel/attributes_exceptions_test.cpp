@@ -1,10 +1,10 @@
-// What channels of attributes leave out: pauses, and how sources start (docs/attributes.md).
+// What channels of attributes leave out: pauses, and how sources start (docs/method.md,
+// section 3.10).
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "../attribute_alarms.h"
 
@@ -105,21 +105,6 @@ TEST(Start, AFirstStampThatIsOddIsForgotten) {
     ASSERT_TRUE(watches(*model, kAge)) << +age;
     EXPECT_NEAR(limitOf(*model, kAge), limitOf(*usual, kAge), 0.01) << +age;
   }
-}
-
-TEST(Start, FirstMessagesOfWhoComesLaterAreForgotten) {
-  const auto limitWith = [](std::uint64_t first_size) {
-    return limitOf(*learned(fourStarts([&](unsigned seed) {
-      const std::int64_t start = (seed + 1) * kStart;
-      Events events = messages(kA, start + 60 * kSecond, start + kLength, {}, seed);
-      for (std::size_t k = 0; k < 5; ++k) {
-        events[k].attributes.size = sizeClass(first_size);
-      }
-      return together({events, messages(kB, start, start + kLength, {}, seed + 100)});
-    })),
-                   kSize);
-  };
-  EXPECT_EQ(limitWith(10), limitWith(800));
 }
 
 TEST(Age, AFewMessagesMayLackAStamp) {

@@ -1,11 +1,11 @@
-// The channels of attributes, from the events to the alarm (docs/attributes.md).
+// The channels of attributes, from the events to the alarm (docs/method.md, section 3.10).
 
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <optional>
+#include <functional>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../attribute_alarms.h"
@@ -155,6 +155,28 @@ TEST(Attributes, AreOffWhereTrainingKnowsNothingOfThem) {
   EXPECT_FALSE(alarmIn(*model, robot({}, 10))) << "what is known now says nothing";
 }
 
+TEST(Attributes, AreOffWhereTrainingCannotTellWhatIsUsual) {
+  using Change = std::function<void(Attributes&, std::size_t)>;
+  using Step = Attributes::Step;
+  const std::vector<std::pair<const char*, Change>> trainings{
+      {kAge, [](Attributes& each, std::size_t) { each.age = Attributes::kNoAge; }},
+      {kAge, [](Attributes& each, std::size_t) { each.age = Attributes::kZeroStamp; }},
+      {kAge,  // stamps are those of something old
+       [](Attributes& each, std::size_t number) {
+         each.age = ageClass(static_cast<std::int64_t>(number % 100) * kSecond / 10);
+       }},
+      {kLost, [](Attributes& each, std::size_t) { each.step = Step::kSame; }},
+      {kLost, [](Attributes& each, std::size_t) { each.step = Step::kLostFew; }},
+      {kFrozen, [](Attributes& each, std::size_t) { each.same = true; }}};
+  for (std::size_t k = 0; k < trainings.size(); ++k) {
+    const auto& [channel, change] = trainings[k];
+    const auto model = learned(recordingsWhere(
+        [&](Event& event, std::size_t number) { change(event.attributes, number); }));
+    EXPECT_FALSE(watches(*model, channel)) << k;
+    EXPECT_TRUE(watches(*model, channel, kB)) << k;
+  }
+}
+
 TEST(Attributes, OfOlderRecordingsAreNotMissed) {
   const auto model = learned(Source{});
   EXPECT_FALSE(alarmIn(
@@ -167,22 +189,6 @@ TEST(Attributes, DoNotChangeTheLimitsOfOthers) {
   ASSERT_LT(one.tracks.size(), other.tracks.size());
   other.tracks.resize(one.tracks.size());
   expectSameLimits(one, other);
-}
-
-TEST(Age, IsOffWithoutStamps) {
-  for (const std::uint8_t age : {Attributes::kNoAge, Attributes::kZeroStamp}) {
-    const auto model =
-        learned(recordingsWhere([&](Event& event, std::size_t) { event.attributes.age = age; }));
-    EXPECT_FALSE(watches(*model, kAge));
-    EXPECT_TRUE(watches(*model, kAge, kB));
-  }
-}
-
-TEST(Age, IsOffWhereStampsAreThoseOfSomethingOld) {
-  const auto model = learned(recordingsWhere([](Event& event, std::size_t number) {
-    event.attributes.age = ageClass(static_cast<std::int64_t>(number % 100) * kSecond / 10);
-  }));
-  EXPECT_FALSE(watches(*model, kAge));
 }
 
 TEST(Age, AStampThatIsMissingIsFound) {
@@ -205,15 +211,6 @@ TEST(Age, AClockThatIsWrongByHoursOrDriftsIsNoFault) {
       }
     }
     EXPECT_FALSE(alarmIn(*model, shifted)) << offset;
-  }
-}
-
-TEST(Lost, IsOffWhereNumbersDoNotCount) {
-  for (const auto step : {Attributes::Step::kSame, Attributes::Step::kLostFew}) {
-    const auto model =
-        learned(recordingsWhere([&](Event& event, std::size_t) { event.attributes.step = step; }));
-    EXPECT_FALSE(watches(*model, kLost));
-    EXPECT_TRUE(watches(*model, kLost, kB));
   }
 }
 
@@ -266,14 +263,6 @@ TEST(Size, IsOffWhereHalvesOfTheTrainingDiffer) {
   }));
   EXPECT_FALSE(watches(*model, kSize));
   EXPECT_TRUE(watches(*model, kSize, kB));
-}
-
-TEST(Frozen, IsOffWhereTrainingRepeatsItself) {
-  Source source;
-  source.repeats = true;
-  const auto model = learned(source);
-  EXPECT_FALSE(watches(*model, kFrozen));
-  EXPECT_TRUE(watches(*model, kFrozen, kB));
 }
 
 TEST(Frozen, IsOffWhereTrainingRepeatedItselfForAWhileAndSaysSo) {

@@ -38,14 +38,14 @@ Events modes(std::int64_t begin) {
 class CompanyTest : public TrackTest {
  protected:
   void learn(const SourceGraph& graph = {}) {
-    watched_ = watch(countsOf({modes(kStart)}), countsOf({modes(2 * kStart)}), graph);
-    TrackTest::learn(watched_, kCompany, kA, kB);
+    learn(countsOf({modes(kStart)}), countsOf({modes(2 * kStart)}), graph);
+  }
+  void learn(const Statistics& first, const Statistics& second, const SourceGraph& graph = {}) {
+    TrackTest::learn(watch(first, second, graph), kCompany, kA, kB);
   }
   bool watches(EventId to, EventId from) const {
-    return isWatched(watched_.tracks, kCompany, to, from);
+    return isWatched(model_->tracks(), kCompany, to, from);
   }
-
-  Watched watched_;
 };
 
 TEST_F(CompanyTest, WhoPausesTogetherIsInCompany) {
@@ -57,7 +57,7 @@ TEST_F(CompanyTest, WhoPausesTogetherIsInCompany) {
 }
 
 TEST_F(CompanyTest, PausesOfOneStartMayBeChance) {
-  watched_ = watch(countsOf({modes(kStart)}), countsOf({modes(kStart + kSecond)}));
+  learn(countsOf({modes(kStart)}), countsOf({modes(kStart + kSecond)}));
   EXPECT_FALSE(watches(kA, kB));
 }
 
@@ -67,7 +67,7 @@ TEST_F(CompanyTest, OtherPausesAreNoCompany) {
                                      inSessions(kB, 5 * kSecond, kSlow, session)}),
                            begin)});
   };
-  watched_ = watch(start(kStart, kSession * 3 / 4), start(2 * kStart, kSession / 2));
+  learn(start(kStart, kSession * 3 / 4), start(2 * kStart, kSession / 2));
   EXPECT_FALSE(watches(kA, kB));
   EXPECT_FALSE(watches(kB, kA));
 }
@@ -104,16 +104,6 @@ TEST_F(CompanyTest, WhoWasNeverHeardMayBeStartingForAMinute) {
   }
   EXPECT_EQ(evidenceAt(60 * kSecond - kWindow), 0);
   EXPECT_EQ(evidenceAt(60 * kSecond), 500);
-}
-
-TEST_F(CompanyTest, WhatWaitedInAStallIsNoCompany) {
-  learn();
-  scorer_->add({0, kA});
-  scorer_->add({kMillisecond, kB});
-  for (int k = 1; k <= 10; ++k) {
-    scorer_->add({660 * kMillisecond + k * kMillisecond, kB});
-  }
-  EXPECT_EQ(evidenceAt(kSecond), 1);
 }
 
 TEST_F(CompanyTest, ARestartForgetsIt) {

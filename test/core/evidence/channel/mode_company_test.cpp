@@ -1,12 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 #include <memory>
-#include <optional>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "../judged.h"
@@ -15,7 +10,6 @@
 #include "core/evidence/watch/relations.h"
 #include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/stream/mode.h"
-#include "self_awareness/core/verdict/alarm.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -62,15 +56,13 @@ Events driving(std::int64_t begin, bool with_mode = true, std::int64_t planner_d
 class ModeCompanyTest : public TrackTest {
  protected:
   void learn(const SourceGraph& graph = {}, const std::vector<EventType>& types = kRobot) {
-    watched_ =
-        watch(countsOf({driving(kStart)}, types), countsOf({driving(2 * kStart)}, types), graph);
-    TrackTest::learn(watched_, kCompany, kPlan, kDriving);
+    TrackTest::learn(
+        watch(countsOf({driving(kStart)}, types), countsOf({driving(2 * kStart)}, types), graph),
+        kCompany, kPlan, kDriving);
   }
   bool watches(EventId to, EventId from) const {
-    return isWatched(watched_.tracks, kCompany, to, from);
+    return isWatched(model_->tracks(), kCompany, to, from);
   }
-
-  Watched watched_;
 };
 
 TEST_F(ModeCompanyTest, WhoPausesInOtherModesIsInCompanyWithOne) {
@@ -98,7 +90,7 @@ TEST_F(ModeCompanyTest, NobodyElseSeesAMode) {
   const Watched without = watch(countsOf({driving(kStart, false)}, kRobot),
                                 countsOf({driving(2 * kStart, false)}, kRobot));
   std::vector<Track> others;
-  for (const Track& track : watched_.tracks) {
+  for (const Track& track : model_->tracks()) {
     if (track.from != kDriving) {
       others.push_back(track);
     }
@@ -134,25 +126,6 @@ TEST_F(ModeCompanyTest, EvidenceIsTheTimeThatTheModeHasLasted) {
   EXPECT_EQ(evidenceAt(203 * kSecond), 1);
 }
 
-TEST_F(ModeCompanyTest, AModeThatTrainingNeverSawEndsTheOneBefore) {
-  learn();
-  scorer_->enter({0, kDriving});
-  scorer_->add({kSecond, kPlan});
-  scorer_->enter({3 * kSecond, kNewMode});
-  EXPECT_EQ(evidenceAt(100 * kSecond), 2);
-}
-
-TEST_F(ModeCompanyTest, TheModeLastsOverARestart) {
-  learn();
-  scorer_->enter({500 * kSecond, kDriving});
-  scorer_->add({501 * kSecond, kPlan});
-  EXPECT_EQ(evidenceAt(520 * kSecond), 19);
-  scorer_->restart();
-  scorer_->add({10 * kSecond, kPlan});
-  EXPECT_EQ(evidenceAt(10 * kSecond), 0);
-  EXPECT_EQ(evidenceAt(14 * kSecond), 4);
-}
-
 TEST_F(ModeCompanyTest, LimitsKnowTheModeThatLastsWhenTheClockIsSet) {
   learn();
   LimitFinder finder(model_, {kWindow, 5 * kSecond});
@@ -177,29 +150,10 @@ TEST_F(ModeCompanyTest, WhatIsForgottenBeginsAnew) {
   EXPECT_EQ(evidenceAt(11 * kSecond), 1);
 }
 
-TEST_F(ModeCompanyTest, WhoWasNeverHeardMayBeStartingForAMinute) {
-  learn();
-  scorer_->enter({0, kDriving});
-  EXPECT_EQ(evidenceAt(60 * kSecond - kWindow), 0);
-  EXPECT_EQ(evidenceAt(60 * kSecond), 60);
-}
-
-TEST_F(ModeCompanyTest, WhileTheWholeRobotStandsStillNoModeGoesOn) {
-  learn();
-  scorer_->enter({0, kDriving});
-  scorer_->add({kSecond, kPlan});
-  scorer_->add({kSecond + kMillisecond, kImu});
-  const double standing = evidenceAt(kSecond + 601 * kMillisecond);
-  EXPECT_LT(standing, 0.01) << "nobody is heard";
-}
-
 TEST_F(ModeCompanyTest, ItHasTheLeastLimitOfWhoComesEverySecond) {
   learn();
-  const Expectation& expected = model_->expectation(track_);
   EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
-  EXPECT_EQ(expected.timeUntil(track_, 4), 4.0 * kSecond);
-  EXPECT_EQ(expected.limit(track_, 3, 7), 7);
-  EXPECT_TRUE(std::isnan(expected.limit(track_, 100, 200))) << "as long as a pause";
+  EXPECT_EQ(model_->expectation(track_).timeUntil(track_, 4), 4.0 * kSecond);
 }
 
 /// What a model learns of starts of this robot, and what it says then.
@@ -209,24 +163,11 @@ class ModeLearnedTest : public testing::Test {
     return learnedFrom(kRobot, {driving(kStart, with_mode), driving(2 * kStart, with_mode),
                                 driving(3 * kStart, with_mode), driving(4 * kStart, with_mode)});
   }
-  /// The first alarm of a recording.
-  static std::optional<Alarm> alarmIn(const core::Model& model, const Events& events) {
+  /// A judge that hears of one mode more, kNewMode.
+  static std::unique_ptr<core::Judge> judgeOf(const core::Model& model) {
     const auto heard = std::make_shared<Vocabulary>(model.vocabulary());
     heard->intern({"/logic", "/state", typeOfMode("S", "LOST")});
-    Alarms alarms;
-    std::optional<Alarm> first;
-    std::vector<std::string> unknown;
-    Detector detector(model.makeJudge(heard), model.window, {}, [&](const Verdict& verdict) {
-      alarms.add(verdict, model.window, *heard);
-      if (verdict.alarm && !first) {
-        first = alarms.standing();
-      }
-      EXPECT_EQ(verdict.window->unknown(), 0U);
-    });
-    addAll(detector, events);
-    detector.finish();
-    EXPECT_TRUE(detector.unknown().empty());
-    return first;
+    return model.makeJudge(heard);
   }
 };
 
@@ -234,14 +175,14 @@ class ModeLearnedTest : public testing::Test {
 // mode says that it drives.
 TEST_F(ModeLearnedTest, ADeathWhileDrivingIsFoundSoon) {
   const std::int64_t dies = 2 * kCycle + 5 * kSecond;
-  const std::optional<Alarm> found = alarmIn(learned(true), driving(9 * kStart, true, dies));
+  const auto found = alarmIn(judgeOf(learned(true)), driving(9 * kStart, true, dies));
   ASSERT_TRUE(found);
-  EXPECT_EQ(found->culprit, "/planner");
-  EXPECT_LT(found->begin - 9 * kStart - dies, 10 * kSecond);
-  EXPECT_GT(found->begin - 9 * kStart - dies, 2 * kSecond);
+  EXPECT_EQ(found->suspects.at(0).component, "/planner");
+  EXPECT_LT(found->time - 9 * kStart - dies, 10 * kSecond);
+  EXPECT_GT(found->time - 9 * kStart - dies, 2 * kSecond);
 
-  const std::optional<Alarm> without = alarmIn(learned(false), driving(9 * kStart, false, dies));
-  EXPECT_TRUE(!without || without->begin - 9 * kStart - dies > kCharge);
+  const auto without = alarmIn(judgeOf(learned(false)), driving(9 * kStart, false, dies));
+  EXPECT_TRUE(!without || without->time - 9 * kStart - dies > kCharge);
 }
 
 TEST_F(ModeLearnedTest, NobodyWaitsForAMode) {
@@ -258,7 +199,7 @@ TEST_F(ModeLearnedTest, NobodyWaitsForAMode) {
 
 TEST_F(ModeLearnedTest, WhileItChargesNothingIsWrong) {
   const core::Model model = learned(true);
-  EXPECT_FALSE(alarmIn(model, driving(9 * kStart)));
+  EXPECT_FALSE(alarmIn(judgeOf(model), driving(9 * kStart)));
   // It charges for longer than ever: the silence of the planner is unusual then, as without modes;
   // the mode does not make it worse.
   Events longer = driving(9 * kStart);
@@ -269,7 +210,7 @@ TEST_F(ModeLearnedTest, WhileItChargesNothingIsWrong) {
   }
   longer = together(
       {longer, timer(kImu, 9 * kStart + kEnd, 9 * kStart + kEnd + 30 * kSecond, kPlanning)});
-  EXPECT_FALSE(alarmIn(model, longer));
+  EXPECT_FALSE(alarmIn(judgeOf(model), longer));
 }
 
 TEST_F(ModeLearnedTest, WhoMissedAMessageOfTheModeDoesNotKnowIt) {
@@ -293,15 +234,15 @@ TEST_F(ModeLearnedTest, WhoMissedAMessageOfTheModeDoesNotKnowIt) {
 
 TEST_F(ModeLearnedTest, AModeThatTrainingNeverSawIsNeitherAStrangerNorAReason) {
   const core::Model model = learned(true);
-  const auto unknown = static_cast<EventId>(kRobot.size());
+  EXPECT_FALSE(judgeOf(model)->add({9 * kStart, kNewMode})) << "no message of its own";
   // In the third drive something else is done for 15 s, and nothing is planned.
   const std::int64_t begin = 9 * kStart + 2 * kCycle + kSecond;
   const std::int64_t end = begin + 15 * kSecond;
   const Events silent = without(driving(9 * kStart), [&](const Event& event) {
     return event.id == kPlan && event.stamp >= begin && event.stamp < end;
   });
-  EXPECT_FALSE(alarmIn(model, together({silent, {{begin, unknown}, {end, kDriving}}})));
-  EXPECT_TRUE(alarmIn(model, silent)) << "the same without the mode that is told";
+  EXPECT_FALSE(alarmIn(judgeOf(model), together({silent, {{begin, kNewMode}, {end, kDriving}}})));
+  EXPECT_TRUE(alarmIn(judgeOf(model), silent)) << "the same without the mode that is told";
 }
 
 }  // namespace

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <memory>
-
 #include "channel_case.h"
 
 namespace self_awareness::core::evidence {
@@ -112,23 +109,6 @@ TEST_F(OwedTest, ARequestThatTheNextOneOvertakesIsNoneWithoutAnAnswer) {
   EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_deadline);
 }
 
-TEST_F(OwedTest, WhatWaitedInAStallIsNoRequest) {
-  learn([](unsigned seed) {
-    const Events asked = irregular(kA, 0, 100 * kSecond, 500 * kMillisecond, seed);
-    return together({asked, answers(kB, asked, 50 * kMillisecond),
-                     timer(kC, 0, 100 * kSecond, 20 * kMillisecond)});
-  });
-  for (const std::int64_t silence : {10 * kMillisecond, 300 * kMillisecond}) {
-    scorer_ = std::make_unique<Scorer>(model_, kWindow);
-    scorer_->add({0, kA});
-    scorer_->add({50 * kMillisecond, kB});
-    for (int k = 0; k < 10; ++k) {
-      scorer_->add({50 * kMillisecond + silence + k, kA});
-    }
-    EXPECT_EQ(evidenceAt(kSecond), silence > 20 * kMillisecond ? 0 : 10);
-  }
-}
-
 TEST_F(OwedTest, WhoeverAnswersSoonestIsAskedFirst) {
   // B answers to A at once, and to C only by chance: with room for one, it owes A.
   Tuning tuning;
@@ -141,16 +121,6 @@ TEST_F(OwedTest, WhoeverAnswersSoonestIsAskedFirst) {
   const Model model(watch(start(1), start(2), SourceGraph(), tuning));
   EXPECT_LT(indexOf(model.tracks(), kDeadlines, kB, kA), model.tracks().size());
   EXPECT_EQ(indexOf(model.tracks(), kDeadlines, kB, kC), model.tracks().size());
-}
-
-TEST_F(OwedTest, ARestartForgetsRequests) {
-  learn(8 * kSecond);
-  scorer_->add({0, kB});
-  scorer_->add({kSecond, kA});
-  EXPECT_GT(evidenceAt(10 * kSecond), 0);
-  scorer_->restart();
-  scorer_->add({20 * kSecond, kB});
-  EXPECT_EQ(evidenceAt(30 * kSecond), 0);
 }
 
 }  // namespace

@@ -148,13 +148,6 @@ TEST_F(PaceTest, WhatIsLostOnTheWayIsNotSlower) {
   EXPECT_EQ(slower(), 0);
 }
 
-TEST_F(PaceTest, NoSumGrowsFarBeyondItsLimit) {
-  useLimits();
-  add({now_, kA});
-  wait(kLong, 30);
-  EXPECT_DOUBLE_EQ(slower(), 1.5 * kLimit);
-}
-
 TEST_F(PaceTest, ASumThatReachedItsCapHasNoLimit) {
   // As of a robot that sends at other rates in other modes: nobody knows how far it would grow.
   const Expectation& expected = model_->expectation(slower_);
@@ -166,19 +159,6 @@ TEST_F(PaceTest, ASumThatReachedItsCapHasNoLimit) {
   EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].about, "slower pace");
   EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[1].about, "faster pace");
   EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].topic, kTypes[kA].scope);
-}
-
-TEST_F(PaceTest, LimitsAreAtLeastTwiceWhatWasSeen) {
-  EXPECT_EQ(Pace(Pace::Side::kSlower).margins(Tuning{}).least, 2);
-}
-
-TEST_F(PaceTest, WhatMayHaveWaitedForAStallDoesNotCount) {
-  add({now_, kA});
-  wait(kPeriod, 10);
-  now_ += kLong;  // nobody says anything
-  add({now_, kA});
-  EXPECT_TRUE(scorer_.stalled());
-  EXPECT_EQ(slower(), 0);
 }
 
 TEST_F(PaceTest, AfterARestartOfTheComponentTheSumIsForgotten) {
@@ -193,7 +173,7 @@ TEST_F(PaceTest, AfterARestartOfTheComponentTheSumIsForgotten) {
   EXPECT_GT(slower(), 0) << "at once";
 }
 
-TEST_F(PaceTest, ANewPaceIsNewsOnceAndThenAccepted) {
+TEST_F(PaceTest, AnAcceptedPaceIsNotWatchedUntilItIsAsInTrainingForLong) {
   useLimits();
   const auto isDisarmed = [this] {
     const std::vector<std::size_t> all = scorer_.disarmed();
@@ -202,20 +182,12 @@ TEST_F(PaceTest, ANewPaceIsNewsOnceAndThenAccepted) {
   EXPECT_FALSE(isDisarmed()) << "gaps count from the first one on";
   add({now_, kA});
   wait(kPeriod, 10);
-  const std::int64_t since = now_;
   do {
     wait(kLong);
   } while (slower() > 0);
-  EXPECT_GE(now_ - since, kAccepted);
-  EXPECT_LT(now_ - since, kAccepted + 5 * kSecond);
   EXPECT_TRUE(isDisarmed());
-  wait(kPeriod, 2 * kArming - 2);
-  wait(kLong);
-  EXPECT_EQ(slower(), 0) << "it must be as in training again, for twice as many gaps";
-  wait(kPeriod, 2);
+  wait(kPeriod, 2 * kArming + 1);
   EXPECT_FALSE(isDisarmed());
-  wait(kLong);
-  EXPECT_GT(slower(), 0);
 }
 
 TEST_F(PaceTest, ASuspectIsToldOfByTheNumberSinceTheSumBegan) {

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <optional>
+#include <cmath>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "channel_case.h"
 #include "core/evidence/channel/delays.h"
+#include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -42,68 +44,6 @@ class PairsTest : public FollowedTest {
 };
 
 const auto kAlwaysLate = [](int) { return kUnusual; };
-
-TEST_F(PairsTest, DelaysAddUpAsInACusumTest) {
-  const DelaySurprise surprise_of(*model_, watched_.halves, kA, kB);
-  double sum = 0;
-  double regime = 0;  // of the last two minutes
-  std::optional<std::int64_t> last;
-  const auto add = [&](std::int64_t delay) {
-    const std::int64_t stamp = now_ + delay;
-    const double surprise = surprise_of(delay);
-    sum = std::max(sum + surprise - std::max(regime, 0.0) - 1, 0.0);
-    regime += (surprise - regime) * toSeconds(last ? stamp - *last : 0) / 120;
-    last = stamp;
-    ask(delay);
-  };
-  for (int i = 0; i < kArming; ++i) {
-    add(kUsual);
-    EXPECT_EQ(sum, 0) << "usual delays do not let it fall below 0";
-  }
-  for (const std::int64_t delay : {kUnusual, kUnusual, kUsual, kUnusual, kUsual, kUsual}) {
-    add(delay);
-    EXPECT_NEAR(evidence(), sum, 1e-12);
-  }
-  EXPECT_GT(sum, 0);
-}
-
-TEST_F(PairsTest, NoSumGrowsFarBeyondItsLimit) {
-  useLimits();
-  askUsually(kArming);
-  for (int i = 0; i < 30; ++i) {
-    ask(kUnusual);
-  }
-  EXPECT_DOUBLE_EQ(evidence(), 1.5 * kLimit);
-}
-
-TEST_F(PairsTest, AStalePredecessorCountsOnce) {
-  askUsually(kArming);
-  add({now_, kA});
-  add({now_ + kUnusual, kB});
-  const double once = evidence();
-  EXPECT_GT(once, 0);
-  for (int i = 1; i < 10; ++i) {  // B goes on without A
-    add({now_ + i * kPeriod, kB});
-  }
-  EXPECT_EQ(evidence(), once);
-}
-
-TEST_F(PairsTest, WhatWasNeverHeardHasNoDelay) {
-  for (int i = 0; i < 10 * kArming; ++i) {
-    add({now_ += kPeriod, kB});
-    ASSERT_EQ(evidence(), 0);
-  }
-  askUsually(kArming - 2);
-  ask(kUnusual);
-  EXPECT_EQ(evidence(), 0) << "nor does it arm";
-}
-
-TEST_F(PairsTest, DelaysThatNeverWereAsInTrainingSayNothing) {
-  for (int i = 0; i < 10 * kArming; ++i) {
-    ask(kUnusual);
-  }
-  EXPECT_EQ(evidence(), 0);
-}
 
 TEST_F(PairsTest, LateAnswersAreNewsOnceAndThenAccepted) {
   useLimits();
@@ -239,6 +179,100 @@ TEST_F(PairsTest, WhatHasBeenLateForMinutesIsTheRegime) {
     ask(kLate);
   }
   EXPECT_EQ(suspect().reason.times, 0U);
+}
+
+// More than chance [standard deviations].
+constexpr double kLeastSurprise = 3;
+
+DelaySurprise surpriseOf(const Watched& watched, EventId from, EventId to) {
+  return DelaySurprise(Model(watched), watched.halves, from, to);
+}
+
+// B comes so much after A [ns].
+Watched twoStarts(std::int64_t delay) {
+  return watch(startOf(followed(1, 100 * kSecond, delay), 1),
+               startOf(followed(2, 100 * kSecond, delay), 2));
+}
+
+TEST(DelaySurprise, IsBounded) {
+  const Watched watched = twoStarts(20 * kMillisecond);
+  const DelaySurprise surprise = surpriseOf(watched, kA, kB);
+  double largest = 0;
+  for (std::int64_t delay = 0; delay < 20 * kSecond; delay += kMillisecond) {
+    largest = std::max(largest, surprise(delay));
+  }
+  EXPECT_DOUBLE_EQ(largest, 6);
+  EXPECT_LT(surprise(20 * kMillisecond), 0);
+  const Model model(watched);
+  const std::size_t track = indexOf(model.tracks(), kPairs, kB, kA);
+  EXPECT_GT(model.leastLimit(track), 2 * largest) << "one late event makes two unusual delays";
+}
+
+TEST(DelaySurprise, SmallEffectsAreNoFault) {
+  const DelaySurprise surprise = surpriseOf(twoStarts(kMillisecond), kA, kB);
+  for (const std::int64_t milliseconds : {0, 1, 3, 5}) {
+    EXPECT_LE(surprise(milliseconds * kMillisecond), 0) << milliseconds;
+  }
+  for (const std::int64_t milliseconds : {30, 60, 100}) {
+    EXPECT_GT(surprise(milliseconds * kMillisecond), kLeastSurprise) << milliseconds;
+  }
+}
+
+TEST(DelaySurprise, ADelayNearZeroIsANeighbourOfAPeriod) {
+  const Events timers = together({timer(kA, 0, 100 * kSecond, 100 * kMillisecond),
+                                  timer(kB, kMillisecond, 100 * kSecond, 100 * kMillisecond)});
+  const DelaySurprise surprise = surpriseOf(watch(startOf(timers, 1), startOf(timers, 2)), kA, kB);
+  EXPECT_LE(surprise(99 * kMillisecond), 0);
+  EXPECT_GT(surprise(50 * kMillisecond), kLeastSurprise);
+}
+
+/// Delays in words: of so many [s], half of them unusual; the usual one came often before.
+std::string wordsOf(const std::vector<double>& unusual, const std::string& other, Kind kind) {
+  std::vector<SeenDelay> seen;
+  std::int64_t now = 0;
+  for (int k = 0; k < 20; ++k) {
+    seen.push_back({now += 100 * kMillisecond, 45e6, -1});
+  }
+  const std::int64_t since = now + 100 * kMillisecond;
+  for (const double delay : unusual) {
+    seen.push_back({now += 100 * kMillisecond, delay * 1e9, 3});
+    seen.push_back({now += 100 * kMillisecond, 45e6, -1});
+  }
+  Reason reason;
+  reason.after = other;
+  describeDelays(seen, 100, 30e6, since + 12040 * kMillisecond, reason);
+  EXPECT_EQ(reason.unit, unit::kSeconds);
+  EXPECT_EQ(reason.kind, kind) << reason.words;
+  return reason.words;
+}
+
+TEST(DescribeDelays, SaysHowMuchLaterHowOftenAndSinceWhen) {
+  EXPECT_EQ(wordsOf({0.0471, 0.0471, 0.0471}, "/a /x T", Kind::kLate),
+            "2.1 ms later than usual 3 times of 6 after /a /x T in the last 12.0 s, usually "
+            "0.045 s");
+  EXPECT_EQ(wordsOf({0.0429, 0.0429}, "/a /x T", Kind::kEarly),
+            "2.1 ms earlier than usual 2 times of 4 after /a /x T in the last 12.0 s, usually "
+            "0.045 s");
+  EXPECT_EQ(wordsOf({0.245}, "/a", Kind::kLate).rfind("200 ms later than usual 1 time of 2 ", 0),
+            0U);
+  EXPECT_EQ(wordsOf({3.045}, "/a", Kind::kLate).rfind("3.00 s later than usual 1 time of 2 ", 0),
+            0U);
+}
+
+TEST(DescribeDelays, SomeEarlierAndSomeLaterAreScattered) {
+  EXPECT_EQ(
+      wordsOf({0.033, 0.057, 0.033, 0.057}, "/a", Kind::kOutOfOrder),
+      "12.0 ms earlier or later than usual 4 times of 8 after /a in the last 12.0 s, usually "
+      "0.045 s");
+}
+
+TEST(DescribeDelays, WithoutAnyItSaysNoNumber) {
+  Reason reason;
+  reason.after = "/a /x T";
+  describeDelays({}, 100, 30e6, kSecond, reason);
+  EXPECT_EQ(reason.kind, Kind::kOutOfOrder);
+  EXPECT_TRUE(std::isnan(reason.value));
+  EXPECT_EQ(reason.words, "at unusual delays after /a /x T");
 }
 
 }  // namespace

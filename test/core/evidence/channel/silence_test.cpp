@@ -22,12 +22,10 @@ class SilenceTest : public FollowedTest {
   std::size_t overdue_ = track(kOverdue, kA, kA);
 };
 
-TEST_F(SilenceTest, GoesByTheTimeSinceTheLastOne) {
-  EXPECT_EQ(evidence(overdue_), 0) << "never seen since the start";
-  add({now_, kA});
-  for (const std::int64_t age : {kMillisecond, kSecond, 100 * kSecond}) {
-    EXPECT_EQ(overdueAt(age), model_->overdue(kA, age));
-  }
+TEST_F(SilenceTest, TheScorerReturnsTheGapOfTheType) {
+  EXPECT_EQ(scorer_.add({now_, kA}), std::nullopt);
+  EXPECT_EQ(scorer_.add({now_ + 5, kB}), std::nullopt);
+  EXPECT_EQ(scorer_.add({now_ + 7, kA}), 7);
 }
 
 TEST_F(SilenceTest, IsCertainOnceItHasLastedAWindowLonger) {

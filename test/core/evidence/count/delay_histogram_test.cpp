@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/evidence/count/log_bins.h"
+#include "self_awareness/core/stream/clock.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -57,6 +58,33 @@ TEST(DelayHistogram, TheMiddleLeavesOutAsManyOnBothSides) {
   EXPECT_EQ(delays.middle(0.9).last, 11U);
   EXPECT_EQ(delays.middle(1).first, 5U);
   EXPECT_EQ(delays.middle(1).last, 20U);
+}
+
+TEST(LogBins, AreFourAnOctaveFrom2500UsTo10240Ms) {
+  EXPECT_EQ(log_bins::bin(0), 0U);
+  EXPECT_EQ(log_bins::bin(-kNanosecondsPerSecond), 0U);
+  EXPECT_EQ(log_bins::bin(2499999), 0U);
+  EXPECT_EQ(log_bins::bin(2500000), 1U);
+  EXPECT_EQ(log_bins::bin(4999999), 4U);
+  EXPECT_EQ(log_bins::bin(5000000), 5U);
+  EXPECT_EQ(log_bins::bin(10239999999), log_bins::kBins - 2);
+  EXPECT_EQ(log_bins::bin(10240000000), log_bins::kBins - 1);
+  EXPECT_EQ(log_bins::bin(kLongestSilence), log_bins::kBins - 1);
+}
+
+TEST(LogBins, EveryEdgeBelongsToTheBinAboveIt) {
+  EXPECT_EQ(log_bins::lowerEdge(0), 0);
+  for (std::size_t bin = 1; bin < log_bins::kBins; ++bin) {
+    EXPECT_EQ(log_bins::bin(log_bins::lowerEdge(bin)), bin);
+    EXPECT_EQ(log_bins::bin(log_bins::lowerEdge(bin) - 1), bin - 1);
+  }
+}
+
+TEST(LogBins, TheMiddleIsTheGeometricMeanOfTheEdges) {
+  EXPECT_DOUBLE_EQ(log_bins::middle(0), 1.25e6);
+  EXPECT_NEAR(log_bins::middle(1), 2.5e6 * std::exp2(0.125), 1);
+  EXPECT_NEAR(log_bins::middle(48), 10.24e9 * std::exp2(-0.125), 1);
+  EXPECT_DOUBLE_EQ(log_bins::middle(49), 10.24e9);
 }
 
 }  // namespace

@@ -115,19 +115,5 @@ TEST_F(AcceptedTest, OnlySuspectsOfThatKindAreDropped) {
   EXPECT_EQ(suspects[0].reason.kind, Kind::kSilent);
 }
 
-TEST_F(AcceptedTest, WhoIsOptionalMayBeMissing) {
-  EXPECT_FALSE(accepted_.isExcused(kB, Kind::kSilent));
-  Acceptances accepted;
-  Acceptance absence;
-  absence.component = "/b";
-  absence.kind = Kind::kNeverCame;
-  accepted.add(absence);
-  accepted_.accept(accepted);
-  EXPECT_TRUE(accepted_.isExcused(kB, Kind::kSilent));
-  EXPECT_TRUE(accepted_.isExcused(kB, Kind::kNeverCame));
-  EXPECT_FALSE(accepted_.isExcused(kB, Kind::kSlow));
-  EXPECT_FALSE(accepted_.isExcused(kA, Kind::kSilent));
-}
-
 }  // namespace
 }  // namespace self_awareness::core::evidence

@@ -1,17 +1,13 @@
-#include "core/evidence/excuse/stopped_together.h"
-
 #include <gtest/gtest.h>
 
-#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "../tracks.h"
+#include "stopped.h"
 
 namespace self_awareness::core::evidence {
 namespace {
-
-using Strings = std::vector<std::string>;
 
 // Two fast ones and a slow one on one computer, two fast ones on another.
 const std::vector<EventType> kRobot{{"/laser", "/scan", "T"},
@@ -20,8 +16,6 @@ const std::vector<EventType> kRobot{{"/laser", "/scan", "T"},
                                     {"/camera", "/image", "T"},
                                     {"/faces", "/people", "T"}};
 constexpr EventId kBattery = 2;
-constexpr std::int64_t kEnd = 100 * kSecond;
-constexpr std::int64_t kAgo = 30 * kSecond;
 
 Events robot(std::int64_t start, unsigned seed) {
   Events events;
@@ -32,35 +26,20 @@ Events robot(std::int64_t start, unsigned seed) {
   return events;
 }
 
-class StoppedTogetherTest : public testing::Test {
+class StoppedTogetherTest : public StoppedTest {
  protected:
-  StoppedTogetherTest() {
+  StoppedTogetherTest() : StoppedTest(kRobot) {
     for (const std::string source : {"/laser", "/imu", "/battery"}) {
       graph_->place(source, "base");
     }
     graph_->place("/camera", "head");
     graph_->place("/faces", "head");
+    learn(robot);
   }
-
-  /// Who is silent `after` the time when each stopped [ns].
   std::optional<Silent> find(const std::vector<std::int64_t>& ages, double share = 2) {
-    const Scorer scorer = heardLast(model_, ages, kEnd);
-    std::vector<double> shares = allTracks(*model_, 0);
-    for (EventId id = 0; id < kRobot.size(); ++id) {
-      ofTrack(shares, *model_, kOverdue, id) = ages[id] > 0 ? share : 0;
-    }
-    std::vector<Excess> excesses = excessesOf(model_, shares, scorer);
-    return StoppedTogether(model_, std::make_shared<Upstream>(model_->components(), graph_),
-                           graph_)
-        .excuse(excesses, allLimits(*model_, 1), scorer, strangers_,
-                std::vector<bool>(model_->size(), false))
-        .silent;
+    beginAnew();
+    return found(ages, kEnd, share).silent;
   }
-
-  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
-  std::map<std::string, std::int64_t> strangers_;
-  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
-      watch(countsOf({robot(0, 100)}, kRobot), countsOf({robot(kStart, 200)}, kRobot)));
 };
 
 TEST_F(StoppedTogetherTest, AComputerOfWhichNobodyIsHeardIsFound) {

@@ -2,78 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
+#include <cstdint>
 #include <random>
 #include <stdexcept>
 #include <vector>
 
+#include "self_awareness/core/evidence/limits/drift_samples.h"
+
 namespace self_awareness::core::evidence {
 namespace {
-
-const std::vector<double> kExponents = {1, 0.5, 0.25};
-
-/// What is bet on the sample `k`, from 0, with an exponent: the mean of exponent p^(exponent - 1)
-/// over the probabilities p that lots would give it.
-double literalPay(const std::vector<double>& shares, std::size_t k, double exponent) {
-  constexpr int kSteps = 20000;
-  double rank = 0;
-  for (std::size_t i = 0; i <= k; ++i) {
-    rank += shares[i] >= shares[k] ? 1 : 0;
-  }
-  double sum = 0;
-  for (int step = 0; step < kSteps; ++step) {
-    const double v = (step + 0.5) / kSteps;  // most steps where the pay is high
-    const double p = (rank - 1 + std::pow(v, 4)) / static_cast<double>(k + 1);
-    sum += exponent * std::pow(p, exponent - 1) * 4 * std::pow(v, 3);
-  }
-  return sum / kSteps;
-}
-
-/// The evidence after samples of one component, by all ways from strategy to strategy.
-double literalEvidence(const std::vector<double>& shares) {
-  constexpr double kGoesOver = 0.01;
-  std::size_t ways = 1;
-  for (std::size_t k = 0; k < shares.size(); ++k) {
-    ways *= kExponents.size();
-  }
-  std::vector<std::vector<double>> pays(shares.size());
-  for (std::size_t k = 0; k < shares.size(); ++k) {
-    for (const double exponent : kExponents) {
-      pays[k].push_back(literalPay(shares, k, exponent));
-    }
-  }
-  double evidence = 0;
-  for (std::size_t way = 0; way < ways; ++way) {
-    double stake = 1;
-    std::size_t rest = way;
-    std::optional<std::size_t> before;
-    for (std::size_t k = 0; k < shares.size(); ++k) {
-      const std::size_t now = rest % kExponents.size();
-      rest /= kExponents.size();
-      const double stays = before && *before == now ? 1 - kGoesOver : 0;
-      stake *= (before ? stays + kGoesOver / 3 : 1.0 / 3) * pays[k][now];
-      before = now;
-    }
-    evidence += stake;
-  }
-  return evidence;
-}
-
-TEST(DriftTest, EvidenceIsThatOfALiteralBetter) {
-  const std::vector<double> shares = {0.5, 0.4, 0.6, 0.6, 0.7, 0.1, 0.8};
-  Drift drift(1);
-  for (const double share : shares) {
-    drift.add({share});
-  }
-  EXPECT_NEAR(drift.component(0).evidence / literalEvidence(shares), 1, 0.005);
-  EXPECT_EQ(drift.samples(), shares.size());
-  EXPECT_EQ(drift.component(0).usual, 0.6);
-  EXPECT_EQ(drift.component(0).last, 0.8);
-  EXPECT_EQ(drift.component(0).told_by, 0);
-}
 
 TEST(DriftTest, TheFirstSampleSaysNothing) {
   Drift drift(2);
@@ -90,14 +29,6 @@ TEST(DriftTest, EqualSharesAreNoDrift) {
     drift.add({0.5});
     ASSERT_LE(drift.component(0).evidence, 1 + 1e-12);
   }
-}
-
-TEST(DriftTest, BadSharesAreRefused) {
-  Drift drift(2);
-  EXPECT_THROW(drift.add({0.5}), std::invalid_argument);
-  EXPECT_THROW(drift.add({0.5, -0.1}), std::invalid_argument);
-  EXPECT_THROW(drift.add({0.5, std::nan("")}), std::invalid_argument);
-  EXPECT_EQ(drift.samples(), 0);
 }
 
 TEST(DriftTest, ADriftForYearsOverflowsNothing) {
@@ -177,6 +108,62 @@ TEST(DriftTest, ADriftOfThreePercentADayIsToldBeforeTheAlarm) {
     }
     EXPECT_GE(in_time, 95) << "after " << quiet << " days";
   }
+}
+
+using Shares = std::vector<double>;
+using Stretch = DriftSamples::Stretch;
+
+constexpr std::int64_t kSecond = kNanosecondsPerSecond;
+constexpr std::int64_t kHour = 3600 * kSecond;
+
+/// An hour that was normal. @param start number of the start of the robot; 0: not known
+Stretch hour(std::int64_t from, std::int64_t start, const Shares& shares) {
+  return {from * kHour, (from + 1) * kHour, start, shares};
+}
+
+/// Shares of the last sample so far.
+Shares lastOf(const DriftSamples& samples, std::size_t components) {
+  Shares last;
+  for (std::size_t number = 0; number < components; ++number) {
+    last.push_back(samples.drift().component(number).last);
+  }
+  return last;
+}
+
+TEST(DriftSamples, HoursOfAStartAreOneSampleADayAndTheLargestShareCounts) {
+  DriftSamples samples(2);
+  samples.add(hour(0, 7, {0.1, 0.4}));
+  samples.add(hour(1, 7, {0.3, 0.2}));
+  samples.add(hour(23, 7, {0.2, 0.2}));
+  EXPECT_EQ(samples.drift().samples(), 1U);
+  EXPECT_EQ(lastOf(samples, 2), (Shares{0.3, 0.4}));
+  samples.add(hour(24, 7, {0, 0}));
+  EXPECT_EQ(samples.drift().samples(), 2U) << "the next day of it";
+  EXPECT_EQ(lastOf(samples, 2), (Shares{0, 0}));
+  samples.add(hour(25, 8, {0.5, 0.5}));
+  EXPECT_EQ(samples.drift().samples(), 3U) << "another start";
+  samples.add(hour(48, 8, {0.6, 0.5}));
+  EXPECT_EQ(samples.drift().samples(), 3U) << "its first day is not over";
+  EXPECT_EQ(lastOf(samples, 2), (Shares{0.6, 0.5}));
+}
+
+TEST(DriftSamples, WhereTheStartIsNotKnownALongPauseEndsIt) {
+  DriftSamples samples(1);
+  samples.add({0, 100 * kSecond, 0, {0.1}});
+  samples.add({160 * kSecond, 200 * kSecond, 0, {0.2}});
+  EXPECT_EQ(samples.drift().samples(), 1U);
+  samples.add({261 * kSecond, 300 * kSecond, 0, {0.2}});
+  EXPECT_EQ(samples.drift().samples(), 2U);
+  samples.add({301 * kSecond, 400 * kSecond, 5, {0.2}});
+  EXPECT_EQ(samples.drift().samples(), 3U) << "it was started";
+}
+
+TEST(DriftSamples, WhatIsNoShareIsRefused) {
+  DriftSamples samples(2);
+  EXPECT_THROW(samples.add(hour(0, 1, {0.1})), std::invalid_argument);
+  EXPECT_THROW(samples.add(hour(0, 1, {0.1, -1})), std::invalid_argument);
+  EXPECT_THROW(samples.add(hour(0, 1, {0.1, std::nan("")})), std::invalid_argument);
+  EXPECT_EQ(samples.drift().samples(), 0U);
 }
 
 }  // namespace

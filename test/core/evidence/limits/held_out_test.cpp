@@ -5,6 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "core/evidence/limits/gap_tail.h"
+#include "core/evidence/limits/left_out.h"
+
 namespace self_awareness::core::evidence {
 namespace {
 
@@ -74,21 +77,94 @@ TEST(HeldOut, WithoutAnExceedanceTheMarginIsMadeForHalfAnOne) {
   EXPECT_NEAR(held_out.margin(0.01), 1.1 * std::pow(0.5 / (3 * 0.01), kScale), 1e-12);
 }
 
-TEST(HeldOut, ASmallerScaleIsBelievedUntilMoreIsSeen) {
-  HeldOut timers(kThreeHours, kScale / 4, kTuning);
-  HeldOut others(kThreeHours, kScale, kTuning);
-  EXPECT_LT(timers.margin(0.01), others.margin(0.01));
-  for (int k = 0; k < 1000; ++k) {
-    timers.add({10, 20, 10}, 5);
-    others.add({10, 20, 10}, 5);
-  }
-  EXPECT_NEAR(timers.margin(0.01) / others.margin(0.01), 1, 0.02);
+std::size_t exceeded(const std::vector<Part>& parts, const std::vector<double>& largest,
+                     double least = 1, double margin = 1.5) {
+  LeftOut left_out(parts, kTuning);
+  left_out.add(largest, largest, least, margin);
+  return left_out.exceeded();
 }
 
-TEST(HeldOut, MoreExceedancesNeedAWiderMargin) {
-  EXPECT_LT(afterExcesses({1, 1, 1}).margin(0.01), afterExcesses({2, 1, 1}).margin(0.01));
-  EXPECT_LT(afterExcesses({2, 1, 1}).margin(0.01), afterExcesses({2, 2, 2}).margin(0.01));
-  EXPECT_LT(afterExcesses({2, 2, 2}).margin(0.01), afterExcesses({4, 4, 4}).margin(0.01));
+TEST(LeftOut, AStartIsJudgedByTheOthers) {
+  const std::vector<Part> parts{{0, 1}, {0, 1}, {1, 2}, {2, 2}};
+  EXPECT_EQ(exceeded(parts, {2, 2, 2, 3}), 0U);
+  EXPECT_EQ(exceeded(parts, {2, 2, 2, 3.1}), 1U);
+  EXPECT_EQ(exceeded(parts, {3.1, 3.1, 2, 2}), 2U) << "each of its parts";
+  EXPECT_EQ(exceeded(parts, {3.1, 2, 2, 2}), 1U);
+  EXPECT_EQ(exceeded(parts, {0.9, 0, 0, 0}), 0U) << "below the least limit";
+  EXPECT_EQ(exceeded(parts, {1.1, 0, 0, 0}), 1U);
+  EXPECT_EQ(exceeded(parts, {5, 0, 0, 0}, 0), 0U) << "the others know nothing of it";
+}
+
+TEST(LeftOut, APartOfALongStartIsJudgedByTheOtherParts) {
+  const std::vector<Part> parts{{0, 1}, {0, 1}, {0, 1}, {1, 1}};
+  EXPECT_EQ(exceeded(parts, {4, 2, 2, 2}), 1U);
+  EXPECT_EQ(exceeded(parts, {4, 4, 2, 2}), 0U);
+}
+
+TEST(LeftOut, WhatIsMostOfAllIsNotJudged) {
+  LeftOut left_out({{0, 5}, {1, 1}, {2, 1}}, kTuning);
+  left_out.add({9, 2, 2}, {9, 2, 2}, 1, 1.5);
+  EXPECT_EQ(left_out.exceeded(), 0U);
+  EXPECT_DOUBLE_EQ(left_out.hours(), 2);
+  EXPECT_DOUBLE_EQ(LeftOut({{0, 5}}, kTuning).hours(), 5) << "nothing can be left out";
+}
+
+TEST(LeftOut, APartCountsOnceWhateverNumberOfTracksExceed) {
+  LeftOut left_out({{0, 1}, {1, 1}, {2, 1}}, kTuning);
+  for (int k = 0; k < 5; ++k) {
+    left_out.add({9, 2, 2}, {9, 2, 2}, 1, 1.5);
+  }
+  left_out.add({2, 9, 2}, {2, 9, 2}, 1, 1.5);
+  EXPECT_EQ(left_out.exceeded(), 2U);
+}
+
+TEST(LeftOut, WhatMostStartsDoNotAgreeOnTellsNothingAboutOthers) {
+  LeftOut left_out({{0, 1}, {1, 1}, {2, 1}}, kTuning);
+  left_out.add({9, 4, 2}, {2, 4, 2}, 1, 1.5);
+  EXPECT_EQ(left_out.exceeded(), 2U) << "the first, and by the agreed also the second";
+}
+
+TEST(LeftOut, TheHighestRateIsThatOfRobotsAndOfWhatOneShows) {
+  // 95 % quantiles of gamma distributions; half an hour is known of all robots.
+  EXPECT_NEAR(highestRate(0, 0.5), 0.58, 0.01);
+  EXPECT_NEAR(highestRate(1, 0.5), 1.92, 0.06);
+  EXPECT_NEAR(highestRate(2, 0.5), 2.996, 0.03);
+  EXPECT_NEAR(highestRate(20, 0.5), 15.71, 0.03);
+  EXPECT_NEAR(highestRate(200, 9.5), 11.70, 0.03);
+  EXPECT_LT(highestRate(0, 10), 0.06) << "hours without an alarm promise more";
+}
+
+TEST(GapTail, IsWhatFewPausesLetExpect) {
+  const GapTail tail({30, 20, 10, 5}, 2, 10, 0, 9,
+                     0);  // two pauses in two hours, 15 longer on average
+  EXPECT_DOUBLE_EQ(tail.age(0.25), 40) << "(1 + 30 / (2 * 15)) to the power of -2";
+  EXPECT_DOUBLE_EQ(tail.age(5), 10);
+}
+
+TEST(GapTail, IsExponentialWhereManyPausesAreBelieved) {
+  const GapTail tail({30, 20, 10, 5}, 2, 10, 0, 9, 1e6);
+  EXPECT_NEAR(tail.age(std::exp(-1)), 25, 1e-4);
+}
+
+TEST(GapTail, PausesOfOneStartAreOneSample) {
+  const GapTail tail({30, 20, 10, 5}, 2, 10, 0, 1, 0);
+  EXPECT_DOUBLE_EQ(tail.age(0.5), 25) << "1 / (1 + 15 / 15)";
+}
+
+TEST(GapTail, KnowsSilencesThatRecordingsCutOff) {
+  const GapTail tail({30, 20, 10, 5}, 2, 10, 30, 9, 0);  // 30 more on average of the two
+  EXPECT_DOUBLE_EQ(tail.age(0.25), 70);
+}
+
+TEST(GapTail, BeginsWithTheShortestOfThoseThatAreKeptIfAllArePauses) {
+  const GapTail tail({30, 20, 16}, 1, 10, 0, 9, 0);
+  EXPECT_DOUBLE_EQ(tail.age(3), 16);
+  EXPECT_DOUBLE_EQ(tail.age(3.0 / 8), 34) << "16 + 18 (8 to the power of 1/3, minus 1)";
+}
+
+TEST(GapTail, OfATypeWithoutGapsIsNone) {  // a model may watch it, if somebody made it so
+  const GapTail tail({}, 1, 10, 0, 9, 2);
+  EXPECT_DOUBLE_EQ(tail.age(0.1), 10);
 }
 
 }  // namespace

@@ -7,12 +7,9 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
-#include <tuple>
-#include <utility>
 #include <vector>
 
 #include "../tracks.h"
-#include "core/evidence/channel/scorer.h"
 #include "self_awareness/core/evidence/limits/cross_fit.h"
 
 namespace self_awareness::core::evidence {
@@ -55,29 +52,6 @@ class LimitFinderTest : public testing::Test {
   std::shared_ptr<const Model> model_ =
       modelOf(robot(100 * kSecond, 1), later(robot(100 * kSecond, 2)));
 };
-
-TEST_F(LimitFinderTest, AreFiniteAndAboveAllThatWasSeen) {
-  const Events normal = robot(200 * kSecond, 3);
-  const Limits limits = limitsOf(model_, normal);
-  ASSERT_EQ(limits.tracks.size(), model_->tracks().size());
-  Scorer scorer(model_, kWindow);
-  std::int64_t end = kWindow;
-  for (const Event& event : normal) {
-    for (; event.stamp >= end; end += kWindow) {
-      const std::vector<double>& evidence = scorer.closeWindow(end);
-      for (std::size_t track = 0; track < evidence.size() && end > 5 * kSecond; ++track) {
-        EXPECT_FALSE(evidence[track] > limits.tracks[track]) << end;
-      }
-    }
-    scorer.add(event);
-  }
-  for (std::size_t track = 0; track < limits.tracks.size(); ++track) {
-    if (!std::isnan(limits.tracks[track])) {
-      EXPECT_GE(limits.tracks[track], model_->leastLimit(track));
-      EXPECT_GT(limits.tracks[track], 0);
-    }
-  }
-}
 
 // A talks for some seconds now and then, and B all the time.
 Events joystick(const std::vector<std::int64_t>& bursts, std::int64_t length) {
@@ -405,20 +379,6 @@ TEST_F(LimitFinderTest, PartsTogetherSayWhatTheRecordingDoes) {
   };
   EXPECT_GE(largestOf(60 * kSecond), kSecond);
   EXPECT_GE(largestOf(40 * kShortestPart), largestOf(60 * kSecond));
-}
-
-TEST_F(LimitFinderTest, AStepOfTheClockIsTheStartOfAnotherRecording) {
-  const Events first = robot(60 * kSecond, 3);
-  const Events second = robot(60 * kSecond, 4);  // starts at 0 again
-  LimitFinder apart(model_, {kWindow, 5 * kSecond});
-  LimitFinder stepped(model_, {kWindow, 5 * kSecond});
-  Events joined = first;
-  joined.insert(joined.end(), second.begin(), second.end());
-  feed(apart, model_, first);
-  feed(apart, model_, second);
-  feed(stepped, model_, joined);
-  EXPECT_EQ(apart.windows(), stepped.windows());
-  expectSameLimits(apart.find().limits, stepped.find().limits);
 }
 
 TEST_F(LimitFinderTest, WithoutAReasonNoRelationIsJudged) {

@@ -38,18 +38,6 @@ TEST(RecentEvents, AreCountedSinceTheLastOneOfAnotherType) {
   EXPECT_EQ(events.since(0, 0), 0U);
 }
 
-TEST(RecentEvents, KnowWhoMayHaveWaited) {
-  RecentEvents events(kTypes);
-  events.add({10, 0}, true);
-  events.add({11, 0}, false);
-  events.add({12, 0}, true);
-  std::vector<bool> stalled;
-  for (const RecentEvents::Remembered& event : events.of(0, 0)) {
-    stalled.push_back(event.stalled);
-  }
-  EXPECT_EQ(stalled, (std::vector<bool>{true, false, true}));
-}
-
 TEST(RecentEvents, AreTheLastOnesOnly) {
   RecentEvents events(kTypes);
   events.add({1, 1}, false);

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <string>
 #include <vector>
 
@@ -61,13 +60,6 @@ bool isOwed(const Statistics& counts, const SourceGraph& graph = kNoGraph) {
   return Relations(counts, graph, kTuning).owed(kA, kB).watched;
 }
 
-TEST(MissRate, IsNeverQuiteZeroOrOne) {
-  EXPECT_DOUBLE_EQ(missRate(99, 80), 0.195);
-  EXPECT_DOUBLE_EQ(missRate(99, 99), 0.005);
-  EXPECT_DOUBLE_EQ(missRate(0, 0), 0.5);
-  EXPECT_DOUBLE_EQ(missRate(99, 0), 0.995);
-}
-
 TEST(NumberOfStarts, RecordingsWithinAMinuteAreOneStart) {
   const auto seconds = [](std::vector<Span> spans) {
     for (Span& span : spans) {
@@ -116,10 +108,6 @@ TEST(Samples, AreRobotsWhereTheyAreSeveralElseStarts) {
       << "who has no name is another one";
 }
 
-TEST(Relations, TheOwnHistoryNeedsNoReason) {
-  EXPECT_TRUE(delays(timers({20 * kMillisecond}), kNoGraph, kA, kA).watched);
-}
-
 TEST(Relations, AsManyStartsAreEnoughAsItSaysAreNeeded) {
   const std::vector<std::int64_t> phases(10, 20 * kMillisecond);
   const Statistics one = timers({phases.front()});
@@ -144,27 +132,6 @@ TEST(Relations, TimersThatDoNotAgreeAreNotWatchedAfterAnyNumberOfStarts) {
   const Relation relation = delays(counts);
   EXPECT_EQ(relation.starts, 20U);
   EXPECT_GT(relation.spread, 0.8);
-  EXPECT_FALSE(relation.watched);
-}
-
-TEST(Relations, OneStartThatDiffersCountsHoweverManyAgree) {
-  std::vector<std::int64_t> phases(19, 20 * kMillisecond);
-  const Statistics agree = timers(phases);
-  phases.push_back(70 * kMillisecond);
-  const Statistics differ = timers(phases);
-  EXPECT_GT(delays(differ).spread, 5 * delays(agree).spread);
-}
-
-TEST(Relations, RecordingsOfOneStartAreNoNewEvidence) {
-  std::vector<Events> recordings;
-  for (int part = 0; part < 6; ++part) {
-    recordings.push_back(later(
-        together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)}),
-        part * (kLength + 30 * kSecond)));
-  }
-  const Statistics counts = countsOf(recordings, 2);
-  const Relation relation = delays(counts);
-  EXPECT_EQ(relation.starts, 1U);
   EXPECT_FALSE(relation.watched);
 }
 
@@ -323,15 +290,6 @@ TEST(Relations, MissesByChanceAreTheGapsThatFitIntoThoseOfTheOther) {
   EXPECT_NEAR(relations.missRateByChance(kA, kB), 0.5, 0.02);
   EXPECT_EQ(relations.missRateByChance(kB, kA), 0) << "an A comes in every gap of B";
   EXPECT_EQ(relations.missRateByChance(kA, kA), 0);
-}
-
-TEST(Relations, MissesByChanceKnowTheGapsBeyondTheLastBin) {
-  const Events seldom = irregular(kA, 0, 3000 * kSecond, 30 * kSecond, 1);
-  const Events others = irregular(kB, 0, 3000 * kSecond, 30 * kSecond, 2);
-  const Statistics counts = countsOf({together({seldom, others})}, 2);
-  std::uint64_t missed = counts.type(kA).gaps - counts.answers(kA, kB);
-  EXPECT_NEAR(Relations(counts, kNoGraph, kTuning).missRateByChance(kA, kB),
-              static_cast<double>(missed) / static_cast<double>(counts.type(kA).gaps), 0.15);
 }
 
 // Requests at random, about every 4 s, each with its answer.

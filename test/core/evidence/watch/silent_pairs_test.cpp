@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
 #include <random>
-#include <vector>
 
+#include "../recordings.h"
 #include "../tracks.h"
 #include "core/evidence/watch/gain.h"
 #include "self_awareness/core/model.h"
@@ -119,6 +121,33 @@ TEST(InformationGain, NeverExceedsTheMostThatItCanBe) {
       EXPECT_GE(gain.most(from, to), gain(from, to)) << from << " " << to;
     }
   }
+}
+
+constexpr double kFewestDelays = 50;
+
+// So many delays after one event type, by bin.
+Partners after(EventId from, const std::map<std::size_t, std::uint32_t>& counts) {
+  Partner partner;
+  partner.id = from;
+  for (const auto& [bin, count] : counts) {
+    partner.delays.at(bin) = count;
+  }
+  return partnersOf({partner});
+}
+
+TEST(InformationGain, IsTheMeanLogRatioOnTheOtherHalf) {
+  Statistics learned = countsOf({}, 2);
+  learned.setPartners(kB, after(kA, {{10, 50}}));
+  learned.setPartners(kA, after(kA, {{20, 100}}));
+  Statistics measured = countsOf({}, 2);
+  measured.setPartners(kB, after(kA, {{10, 30}, {20, 20}}));
+  const InformationGain gain(learned, measured, kFewestDelays);
+  // P: 51 and 1 of 100; Q: 51 and 101 of 200.
+  EXPECT_NEAR(gain(kA, kB), (30 * std::log(2.0) + 20 * std::log(2.0 / 101)) / 50, 1e-12);
+  EXPECT_EQ(gain(kA, kA), 0);  // not measured
+  EXPECT_EQ(gain(kB, kA), 0);  // not learned
+  measured.setPartners(kB, after(kA, {{10, 30}, {20, 19}}));
+  EXPECT_EQ(gain(kA, kB), 0);  // too little to measure on
 }
 
 }  // namespace

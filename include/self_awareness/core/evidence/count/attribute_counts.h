@@ -21,9 +21,9 @@ std::uint64_t total(const ClassCounts& counts);
 /// The class that a share (0 to 1) of the messages does not exceed; 0 without messages.
 std::uint8_t quantile(const ClassCounts& counts, double share);
 
-/// What training counts of the attributes of an event type's messages (docs/attributes.md). Of
-/// those in the first kAttributesFrom of a recording, it only knows that they came. The counts of
-/// two trainings add up.
+/// What training counts of the attributes of an event type's messages (docs/method.md,
+/// section 3.10). Of those in the first kAttributesFrom of a recording, it only knows that they
+/// came. The counts of two trainings add up.
 struct AttributeCounts {
   ClassCounts ages;   ///< of messages with a header: Attributes::age
   ClassCounts rises;  ///< ageClass() of how much older they were than of late (AgeLevel)

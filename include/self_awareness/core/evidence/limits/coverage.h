@@ -11,7 +11,7 @@
 
 namespace self_awareness::core::evidence {
 
-/// How soon faults of a component are found by a model's limits (docs/calibration.md).
+/// How soon faults of a component are found by a model's limits (docs/learn.md).
 struct Coverage {
   /// What needs more starts than so many is not told.
   static constexpr std::size_t kMostStarts = 50;
@@ -26,7 +26,7 @@ struct Coverage {
   /// Longest time to the alarm, if it dies, while others ask it or go on that pause when it does
   /// [s]; none: nobody does.
   std::optional<double> found_when_asked;
-  /// Whether its death would be found, but is accepted as normal (docs/accept.md).
+  /// Whether its death would be found, but is accepted as normal (docs/live.md).
   bool accepted = false;
   /// Whether it is found that it answers late, or in another order.
   bool late_answers = false;

@@ -6,7 +6,7 @@
 namespace self_awareness::core::evidence {
 
 /// Tells that what is heard drifts towards the limits, before it is beyond them, by a test whose
-/// false alarms over a lifetime are bounded (docs/learn_more.md).
+/// false alarms over a lifetime are bounded (docs/learn.md).
 ///
 /// A sample is the largest share of its limit that each component reached in a start of the robot,
 /// or in a day of one. As long as nothing changes, no order of the samples is more probable than

@@ -11,7 +11,7 @@
 namespace self_awareness::core::evidence {
 
 /// What is one sample of a Drift: all that was normal in a start of the robot, or in a day of one
-/// (docs/learn_more.md). Hours of a start are no independent draws, and what a robot does depends
+/// (docs/learn.md). Hours of a start are no independent draws, and what a robot does depends
 /// on the time of day; so neither hours nor files are samples. Times are in ns.
 class DriftSamples {
  public:

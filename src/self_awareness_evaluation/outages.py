@@ -8,26 +8,24 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
-
-import numpy as np
+from typing import Callable, Dict, Iterator, Optional, Sequence, Tuple
 
 from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EncodingRules, EvidenceModel,
-                            PaperModel, Roc, TrainedModel, Tuning, recordings)
+                            Tuning, recordings)
 from self_awareness.calibration.limits import TooLittleError
-from self_awareness.judging import BOTH, Judge, evidence_judge, paper_judge
+from self_awareness.judging import BOTH, evidence_judge
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
 from self_awareness_evaluation import tunings
-from self_awareness_evaluation.detectors import judged_of
+from self_awareness_evaluation.detectors import Paper, judged_of
 from self_awareness_evaluation.experiment import Unit
-from self_awareness_evaluation.peers.frequency import LearnedFrequencyMonitor
+from self_awareness_evaluation.peers import LearnedFrequencyMonitor
 from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.rows import HOUR_S, Row, Subject, at_end
-from self_awareness_evaluation.systems import Judged, ScoringSystem, SystemAlarm, settling
+from self_awareness_evaluation.systems import Judged, System, SystemAlarm
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 OUTAGE = 'outage'
@@ -107,13 +105,31 @@ def check_data(data: Path) -> None:
                                  'has it')
 
 
-def rows(unit: Unit, case: Case, data: Path) -> Iterator[Row]:
+@dataclass(frozen=True)
+class JudgedCase:
+    """What a system says of a recording.
+
+    Args:
+        alarms, suspicions: stretches of time.
+        first: stamp of the first message [ns].
+        length: of the recording [s].
+        watched: event types, or topics, that it watches at all.
+    """
+
+    alarms: Sequence[SystemAlarm]
+    suspicions: Sequence[SystemAlarm]
+    first: int
+    length: float
+    watched: int
+
+
+def rows(case: Case, data: Path, unit: Unit) -> Iterator[Row]:
     """Yield what variants say of a case: of normal operation, and of the outage if there is one.
 
     Args:
-        unit: of the case.
         case: one of CASES.
         data: folder of the recordings, see check_data().
+        unit: of the case.
 
     Raises:
         BagError: a recording cannot be read.
@@ -130,64 +146,35 @@ def rows(unit: Unit, case: Case, data: Path) -> Iterator[Row]:
         yield from case_rows(subject, case, judged)
 
 
-@dataclass(frozen=True)
-class JudgedCase:
-    """What a system says of a recording.
-
-    Args:
-        alarms, suspicions: as SystemAlarm, with times from the first message on [ns].
-        length: of the recording [s].
-        watched: event types, or topics, that it watches at all.
-    """
-
-    alarms: Sequence[SystemAlarm]
-    suspicions: Sequence[SystemAlarm]
-    length: float
-    watched: int
-
-
 def _evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
-    """Let the evidence detector judge a case.
-
-    Args:
-        case: one of CASES.
-        data: folder of the recordings, see check_data().
-        tuning: of the method.
+    """Let the evidence detector judge a case, with limits of what it learned from, by cross-fit.
 
     Raises:
         BagError: a recording cannot be read.
         TooLittleError: the recordings are too short for limits.
     """
-    parts = [_below(data, case.training), _below(data, case.calibration)]
-    trained_on = _trained(parts, tuning)
+    trained_on = _trained(data, tuning, case.training, case.calibration)
     limits = many_bags.preliminary_limits(trained_on).limits
-    trained, parameters = trained_on.model, DetectorParameters()
+    trained = trained_on.model
     watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks, limits)
                if not math.isnan(limit)}
-    return _judge(trained, evidence_judge(trained, parameters), data / case.judged,
-                  len(watched))
+    judged = recordings.read(trained, _below(data, BagPart(case.judged)))
+    verdicts = evidence_judge(trained, DetectorParameters())(
+        judged.stamps, judged.ids, judged.end, judged.event_types, attributes=judged.attributes)
+    return _case(judged, judged_of(verdicts, judged.event_types, EVIDENCE_THRESHOLD,
+                                   trained.graph), len(watched))
 
 
 def _paper(case: Case, data: Path, _: Tuning) -> JudgedCase:
-    trained = _trained([_below(data, case.training)]).model
-    model, parameters = PaperModel(trained), DetectorParameters()
-    normal = recordings.read(trained, _below(data, case.calibration))
-    scores = paper_judge(trained, model, None, parameters)(normal.stamps, normal.ids,
-                                                           normal.end)
-    threshold = _paper_threshold(np.nan_to_num(scores.score[~scores.settling]))
-    return _judge(trained, paper_judge(trained, model, threshold, parameters),
-                  data / case.judged, len(trained.event_types) if threshold > 0.0 else 0)
+    system = Paper(RATE, MOST_SILENT)
+    judged, said, types = _learned(system, case, data)
+    return _case(judged, said, types if said.threshold > 0.0 else 0)
 
 
 def _frequency_learned(case: Case, data: Path, _: Tuning) -> JudgedCase:
-    trained = _trained([_below(data, case.training)]).model  # for the encoding only
-    scorer = LearnedFrequencyMonitor()
-    scorer.train([_events(recordings.read(trained, _below(data, case.training)))])
-    normal = _events(recordings.read(trained, _below(data, case.calibration)))
-    threshold = Roc(scorer.scores(normal)[~settling(normal)], []).level(RATE).cutoff
-    recording = recordings.read(trained, BagPart(str(data / case.judged)))
-    judged = ScoringSystem('frequency_learned', scorer, threshold).judge(_events(recording))
-    return _from_first_message(recording, judged, len(scorer.bounds))
+    system = LearnedFrequencyMonitor(RATE)
+    judged, said, _types = _learned(system, case, data)
+    return _case(judged, said, len(system.bounds))
 
 
 SYSTEMS: Dict[str, Callable[[Case, Path, Tuning], JudgedCase]] = {
@@ -198,65 +185,53 @@ SYSTEMS: Dict[str, Callable[[Case, Path, Tuning], JudgedCase]] = {
 """The systems by name."""
 
 
+def _trained(data: Path, tuning: Tuning, *parts: BagPart) -> Trained:
+    return many_bags.train([_below(data, part) for part in parts],
+                           Counting(EncodingRules.defaults(), detector=BOTH, tuning=tuning))
+
+
+def _learned(system: System, case: Case, data: Path) -> Tuple[RecordingEvents, Judged, int]:
+    """Return a recording, what a system that has learned says of it, and how many event types its
+    training has."""
+    trained = _trained(data, Tuning(), case.training).model  # for the encoding only
+    found = [recordings.read(trained, _below(data, part))
+             for part in (case.training, case.calibration, BagPart(case.judged))]
+    training, calibration, judged = (
+        WindowedEvents(each.event_types, each.stamps, each.ids, each.end + 1,
+                       attributes=each.attributes) for each in found)
+    system.train([training])
+    system.calibrate([calibration])
+    return found[-1], system.judge(judged), len(trained.event_types)
+
+
 def _below(data: Path, part: BagPart) -> BagPart:
     return BagPart(str(data / part.path), part.start, part.end)
 
 
-def _trained(parts: Sequence[BagPart], tuning: Optional[Tuning] = None) -> Trained:
-    return many_bags.train(parts, Counting(EncodingRules.defaults(), detector=BOTH,
-                                           tuning=tuning or Tuning()))
-
-
-def _paper_threshold(scores: np.ndarray) -> float:
-    """Return the threshold at RATE, or at twice that and so on where more windows are silent.
-
-    It is 0, which no score is below, where more are silent than MOST_SILENT.
-    """
-    rate, threshold = RATE, 0.0
-    while threshold <= 0.0 and rate <= MOST_SILENT:
-        threshold = Roc(scores, []).level(rate).cutoff
-        rate *= 2.0
-    return threshold
-
-
-def _judge(trained: TrainedModel, judge: Judge, path: Path, watched: int) -> JudgedCase:
-    recording = recordings.read(trained, BagPart(str(path)))
-    verdicts = judge(recording.stamps, recording.ids, recording.end, recording.event_types,
-                     attributes=recording.attributes)
-    judged = judged_of(verdicts, recording.event_types, EVIDENCE_THRESHOLD, trained.graph)
-    return _from_first_message(recording, judged, watched)
-
-
-def _from_first_message(recording: RecordingEvents, judged: Judged, watched: int) -> JudgedCase:
-    def shifted(found: Sequence[SystemAlarm]) -> List[SystemAlarm]:
-        return [each.shifted(-recording.origin) for each in found]
-    return JudgedCase(shifted(judged.alarms), shifted(judged.suspicions),
+def _case(recording: RecordingEvents, judged: Judged, watched: int) -> JudgedCase:
+    return JudgedCase(judged.alarms, judged.suspicions, recording.origin,
                       (recording.end - recording.origin) / SECOND_NS, watched)
-
-
-def _events(recording: RecordingEvents) -> WindowedEvents:
-    return WindowedEvents(recording.event_types, recording.stamps, recording.ids,
-                          recording.end + 1, attributes=recording.attributes)
 
 
 def case_rows(subject: Subject, case: Case, judged: JudgedCase) -> Iterator[Row]:
     """Yield the rows of a case."""
-    normal = [(start, min(end, judged.length)) for start, end in case.normal]
+    def at(second: float) -> int:
+        return judged.first + nanoseconds(min(second, judged.length))
+
+    normal = [(at(start), at(end)) for start, end in case.normal]
     false = [alarm for alarm in judged.alarms
-             if any(start <= alarm.start / SECOND_NS < end for start, end in normal)]
-    yield Row(subject, NORMAL, hours=sum(end - start for start, end in normal) / HOUR_S,
-              alarms=len(false), standing_hours=sum(
-                  _overlap(alarm, span) for alarm in judged.alarms for span in normal) / HOUR_S,
-              evidence=tuple(alarm.evidence for alarm in false), watched=judged.watched)
+             if any(start <= alarm.start < end for start, end in normal)]
+    standing = sum(max(min(alarm.end, end) - max(alarm.start, start), 0)
+                   for alarm in judged.alarms for start, end in normal)
+    length = sum(end - start for start, end in normal)
+    yield Row(subject, NORMAL, hours=length / SECOND_NS / HOUR_S, alarms=len(false),
+              standing_hours=standing / SECOND_NS / HOUR_S, watched=judged.watched,
+              evidence=tuple(alarm.evidence for alarm in false))
     if case.outage is None:
         return
-    onset, relief = (nanoseconds(min(each, judged.length)) for each in case.outage)
+    onset, relief = map(at, case.outage)
     found = next((alarm for alarm in judged.alarms if onset < alarm.start < relief), None)
     row = Row(subject, OUTAGE, watched=judged.watched,
               stood_before=any(alarm.stands_at(onset) for alarm in judged.alarms),
               latency_s=None if found is None else (found.start - onset) / SECOND_NS)
     yield at_end(row, [*judged.alarms, *judged.suspicions], onset, relief)
-
-
-def _overlap(alarm: SystemAlarm, span: Span) -> float:
-    return max(min(alarm.end / SECOND_NS, span[1]) - max(alarm.start / SECOND_NS, span[0]), 0.0)

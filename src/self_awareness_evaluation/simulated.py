@@ -1,4 +1,4 @@
-"""The records of one seed of the evaluation in simulated time.
+"""The records of one seed of the simulated follow-me robot, in simulated time.
 
 Every record has a seed of its own, derived from the evaluation's seed and the record's name alone:
 it stays the same whatever else is evaluated. So does the onset of its fault. Every record is a
@@ -7,22 +7,21 @@ start of the robot, hours away from the others: what agrees in all of them could
 from __future__ import annotations
 
 import hashlib
+import os
 import random
-from dataclasses import replace
-from typing import Dict, List, Optional, Sequence, Set, Tuple
+import tempfile
+from typing import Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EventType
+from self_awareness import EncodingRules, read_events
 from self_awareness.stamps import nanoseconds
 from self_awareness_evaluation.records import FaultRecord
-from self_awareness_evaluation.simulated.attributes import (AttributeReader, MessageAttributes,
-                                                            packed)
 from self_awareness_evaluation.windowed_events import Subscriptions, WindowedEvents
 from self_awareness_follow_me.effects import Change
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import Scenario
-from self_awareness_follow_me.simulation import START_S, Event, InducedFault, events
+from self_awareness_follow_me.simulation import START_S, InducedFault, simulate
 
 RECORD_S = 100.0
 """Length of the records of training and of faults [s], as in the paper."""
@@ -84,46 +83,23 @@ def fault_record(scenario: Scenario, seed: int, kind: str) -> FaultRecord:
     return FaultRecord(kind, effect_of(scenario, kind).culprits, recording, onset)
 
 
-def encode(recorded: List[Event], scenario: Scenario, end: int) -> WindowedEvents:
-    """Encode messages as the bag reader does; `end`: of the recording [ns], exclusive.
-
-    The first message of a latched topic is left out: it may be a repeated one, and that it is
-    there is another question.
-    """
-    latched: Set[str] = {'/' + topic for spec in scenario.components
-                         for topic, output in spec.outputs().items() if output.latch}
-    ids: Dict[EventType, int] = {}
-    known: Dict[Tuple[str, str, str, object], int] = {}
-    stamps: List[int] = []
-    event_ids: List[int] = []
-    reader = AttributeReader(scenario)
-    attributes: List[MessageAttributes] = []
-    for event in recorded:
-        read = reader.read(event)
-        if event.topic in latched:
-            latched.remove(event.topic)
-            continue
-        field = scenario.type_fields.get(event.datatype)
-        key = (event.source, event.topic, event.datatype, None if field is None else event.value)
-        if key not in known:
-            datatype = (event.datatype if field is None
-                        else f'{event.datatype}[{field}={event.value}]')
-            event_type = EventType(event.source, event.topic, datatype)
-            known[key] = ids.setdefault(event_type, len(ids))
-        stamps.append(event.stamp_ns)
-        event_ids.append(known[key])
-        attributes.append(read)
-    return WindowedEvents(list(ids), np.array(stamps, dtype=np.int64),
-                          np.array(event_ids, dtype=np.uint32), end,
-                          attributes=packed(attributes))
-
-
 def _recorded(scenario: Scenario, seed: int, duration_s: float,
               fault: Optional[InducedFault]) -> WindowedEvents:
+    """Return what is read of the robot's bag, but for what is held ready: that is no message."""
     start_s = _start_s(seed)
-    end = nanoseconds(start_s + duration_s)
-    recording = encode(list(events(duration_s, seed, fault, scenario, start_s)), scenario, end)
-    return replace(recording, subscriptions=_subscriptions(scenario, start_s, fault))
+    rules = EncodingRules()
+    rules.type_fields = dict(scenario.type_fields)
+    with tempfile.TemporaryDirectory() as folder:
+        bag = os.path.join(folder, 'robot.bag')
+        simulate(bag, duration_s, seed, fault, scenario, start_s)
+        found = read_events(bag, rules)
+    is_message = np.array([kind.is_message for kind in found.event_types])
+    heard = is_message[found.ids]
+    ids = (np.cumsum(is_message) - 1).astype(np.uint32)[found.ids[heard]]
+    return WindowedEvents([kind for kind in found.event_types if kind.is_message],
+                          found.stamps[heard], ids, nanoseconds(start_s + duration_s),
+                          attributes=found.attributes[heard],
+                          subscriptions=_subscriptions(scenario, start_s, fault))
 
 
 def _subscriptions(scenario: Scenario, start_s: float, fault: Optional[InducedFault]

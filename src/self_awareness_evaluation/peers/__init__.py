@@ -1,1 +1,0 @@
-"""What others would use to watch a robot's communication: a module for each scorer of windows."""

@@ -1,1 +1,0 @@
-"""Detectors on the simulated follow-me robot, in simulated time."""
