@@ -55,8 +55,7 @@ KeptLogs::KeptLogs(const KeptLogsParameters& parameters, std::function<ros1::Log
       writer_(kPause) {}
 
 void KeptLogs::setModel(const std::string& path, bool calibrated) {
-  mode_.reset();
-  latched_.clear();
+  lasting_.forget();
   folder_ = enabled() && calibrated ? filesystem::absolute(path).string() + kBeside : "";
 }
 
@@ -75,18 +74,11 @@ void KeptLogs::onEvent(const core::Event& event, const core::Vocabulary& vocabul
     });
     first_ = event.stamp;
     last_ = event.stamp;
-    if (mode_) {
-      packer_->add({first_, *mode_}, vocabulary);
-    }
-    for (const core::EventId id : latched_) {
-      packer_->add({first_, id}, vocabulary);
+    for (const core::Event& lasting : lasting_.at(first_)) {
+      packer_->add(lasting, vocabulary);
     }
   }
-  if (vocabulary.tellsMode(event.id)) {
-    mode_ = event.id;
-  } else if (vocabulary.isLatched(event.id)) {
-    latched_.insert(event.id);
-  }
+  lasting_.add(event, vocabulary);
   last_ = std::max(last_, event.stamp);
   if (why_.empty()) {  // else nobody will read it
     packer_->add(event, vocabulary);
@@ -155,8 +147,7 @@ void KeptLogs::write() {
 
 void KeptLogs::onRobotStart(std::int64_t at) {
   endStretch();
-  mode_.reset();
-  latched_.clear();
+  lasting_.forget();
   robot_start_ = at;
 }
 

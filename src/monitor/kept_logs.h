@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +13,7 @@
 #include "ros/bag/recorded_log.h"
 #include "self_awareness/EventLog.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/lasting.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
@@ -87,13 +87,12 @@ class KeptLogs : public Part {
   std::string folder_;                          // empty: nothing is kept
   std::optional<ros1::EventLogPacker> packer_;  // of the stretch; none: it has not begun
   std::vector<std::shared_ptr<const self_awareness::EventLog>> parts_;
-  std::size_t bytes_ = 0;              // of the parts
-  std::int64_t first_ = 0;             // of the stretch
-  std::int64_t last_ = 0;              // up to where all of it was heard
-  std::optional<core::EventId> mode_;  // that was told last: each stretch begins with it
-  std::set<core::EventId> latched_;    // and with what is held ready
-  std::string why_;                    // it is not normal; empty: it is, so far
-  std::int64_t named_at_ = 0;          // wall time that the last file is named by [ns]
+  std::size_t bytes_ = 0;      // of the parts
+  std::int64_t first_ = 0;     // of the stretch
+  std::int64_t last_ = 0;      // up to where all of it was heard
+  core::Lasting lasting_;      // each stretch begins with it
+  std::string why_;            // it is not normal; empty: it is, so far
+  std::int64_t named_at_ = 0;  // wall time that the last file is named by [ns]
   Report report_;
   bool finished_ = false;
   FileWriter writer_;  // last: it writes what the others have handed over

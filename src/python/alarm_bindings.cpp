@@ -90,6 +90,8 @@ void bindAlarms(py::module& m) {
                     "component; empty: there is none, or nobody stands out")
       .def_readonly("reason", &Alarm::reason,
                     "why the culprit is one, in words; without one, who is silent, or empty")
+      .def_readonly("waiting", &Alarm::waiting,
+                    "who waits for the culprit, who for them, and so on; empty: not known")
       .def_readonly("evidence", &Alarm::evidence,
                     "what raised it, in words; empty: a suspicion that an alarm left")
       .def_readonly("lowest_score", &Alarm::lowest_score)

@@ -104,11 +104,7 @@ void EventRecorder::finish() {
 }
 
 void EventRecorder::onEvent(const core::Event& event) {
-  if (vocabulary_.tellsMode(event.id)) {
-    mode_ = event.id;
-  } else if (vocabulary_.isLatched(event.id)) {
-    latched_.insert(event.id);
-  }
+  lasting_.add(event, vocabulary_);
   if (!file_) {
     return;
   }
@@ -136,8 +132,7 @@ void EventRecorder::onClockSet(std::int64_t now) {
 void EventRecorder::onMasterRestart(std::int64_t now) {
   ROS_WARN("the master was restarted: the next recording is of another start of the robot");
   robot_start_ = wallNow();
-  mode_.reset();
-  latched_.clear();
+  lasting_.forget();
   end(now);
 }
 
@@ -184,11 +179,8 @@ void EventRecorder::begin(std::int64_t now) {
         ros1::startOfRecording(parameters_.encoding, now, robot_start_, parameters_.robot);
     file_->log.start(start);
     start_publisher_.publish(start);
-    if (mode_) {
-      packer_->add({now, *mode_}, vocabulary_);
-    }
-    for (const core::EventId id : latched_) {
-      packer_->add({now, id}, vocabulary_);
+    for (const core::Event& event : lasting_.at(now)) {
+      packer_->add(event, vocabulary_);
     }
     began_ = steadyNow();
     problem_.clear();

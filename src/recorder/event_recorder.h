@@ -11,11 +11,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 
 #include "node/live_source.h"
 #include "node/run_node.h"
+#include "self_awareness/core/stream/lasting.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
@@ -109,8 +109,7 @@ class EventRecorder : public NodeProgram, public LiveSource::Listener {
   const std::function<void()> end_;
   Parameters parameters_;
   core::Vocabulary vocabulary_;
-  std::optional<core::EventId> mode_;  // that was told last: each recording begins with it
-  std::set<core::EventId> latched_;    // and with what is held ready
+  core::Lasting lasting_;  // each recording begins with it
   ros::Publisher diagnostics_;
   ros::Publisher start_publisher_;
   ros::ServiceServer finish_;

@@ -35,7 +35,7 @@ class KeptLogsTest(MonitorCase):
         kept = self.run_monitor()
         self.assertEqual(len(kept), 1, kept)
         self.assertRegex(kept[0], r'/model\.kept/normal_[-\d]+\.\d{3}\.bag$')
-        said = run_program('info', kept[0])
+        said = run_program('info', kept[0], '--details')
         self.assertIn('/a std_msgs/String', said)
         self.assertIn('robot started', said)
         self.assertIsNotNone(self.listener.value('monitor', 'logs kept to learn from'))

@@ -61,7 +61,7 @@ class StarvedTest(TrainedCase):
             path = re.search(r' go to (\S+\.bag)$', response.message).group(1)
             await_condition('it is written', lambda: os.path.exists(path), 20)
         printed = run_program('score', path, '--model', self.path('model'), '--unknown', 'ignore',
-                              '--settle-time', '0.5')
+                              '--settle-time', '0.5', '--details')
         self.assertIn('machine has been starved for', printed)
         self.assertIn('alarms: 0,', printed)
 

@@ -20,6 +20,7 @@
 #include "core/evidence/presence/never_heard.h"
 #include "core/evidence/presence/unsubscribed.h"
 #include "core/evidence/presence/who_sends.h"
+#include "self_awareness/core/verdict/dependents.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -49,9 +50,8 @@ class Judge : public core::Judge {
       return std::nullopt;
     }
     if (!model_->vocabulary().isMessage(event.id) || (heard_ && !heard_->isMessage(event.id))) {
-      return who_sends_.addList(event, accepted_)
-                 ? std::optional(ObservedEvent{event, true, std::nullopt})
-                 : std::nullopt;
+      who_sends_.addList(event, accepted_);
+      return std::nullopt;
     }
     const bool unknown = who_sends_.add(event, accepted_);
     const std::optional<std::int64_t> gap = scorer_.add(event);
@@ -100,6 +100,8 @@ class Judge : public core::Judge {
   bool isUnusual() const;
   /// Whether a track beyond its limit is so beyond all doubt.
   bool isCertain() const;
+  /// Who of the suspects waits for the first one, if that is silent; empty: nobody.
+  std::string waitingIn(const std::vector<Suspect>& suspects) const;
   /// The suspects of a window with evidence of known event types.
   /// @param silent_first whether those come before what was never heard that tracks speak against,
   /// and that does not wait for its messages
@@ -109,6 +111,7 @@ class Judge : public core::Judge {
   std::optional<Limits> limits_;
   std::int64_t window_;                      // length of a whole one [ns]
   std::shared_ptr<const Vocabulary> heard_;  // event types by id; null: those of the model
+  std::shared_ptr<const SourceGraph> graph_;
   Scorer scorer_;
   RecentEvents events_;
   std::shared_ptr<const Upstream> upstream_;
@@ -134,6 +137,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       limits_(std::move(limits)),
       window_(window),
       heard_(heard),
+      graph_(graph),
       scorer_(model_, window),
       events_(model_->size()),
       upstream_(std::make_shared<Upstream>(model_->components(), graph)),
@@ -224,7 +228,21 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     judgement.suspects = who_sends_.alone(window, scorer_, suspects == NameSuspects::kAlways);
   }
   accepted_.leaveOut(judgement.suspects);
+  judgement.waiting = waitingIn(judgement.suspects);
   return judgement;
+}
+
+std::string Judge::waitingIn(const std::vector<Suspect>& suspects) const {
+  if (suspects.empty() || !isSilence(suspects.front().reason.kind)) {
+    return "";
+  }
+  std::set<std::string> silent;
+  for (const Suspect& suspect : suspects) {
+    if (suspect.abnormal && isAbsence(suspect.reason.kind)) {
+      silent.insert(suspect.component);
+    }
+  }
+  return waitingFor(*graph_, suspects.front().component, silent);
 }
 
 void Judge::excuseBySenders(const Window& window) {

@@ -36,6 +36,7 @@ void blame(const Suspect& suspect, Alarm& alarm) {
   alarm.reason = suspect.reason.words;
   alarm.kind = suspect.reason.kind;
   alarm.note.clear();
+  alarm.waiting.clear();
 }
 
 /// Takes in that a culprit has an excuse, that who is dead has none any more, or that somebody was
@@ -182,6 +183,10 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
   alarm.later.insert(alarm.later.end(), later.begin(), later.end());
   if (stands) {
     findCause(verdict, suspects, alarm);
+  }
+  if (verdict.waiting.size() > alarm.waiting.size() && !suspects.empty() &&
+      suspects.front().component == alarm.culprit) {
+    alarm.waiting = verdict.waiting;
   }
   if (!verdict.note.empty()) {
     alarm.note = verdict.note;

@@ -220,6 +220,7 @@ void Detector::close(const Window& window, std::int64_t end) {
     verdict.silent = std::move(judgement.silent);
     verdict.mode = std::move(judgement.mode);
     verdict.suspects = std::move(judgement.suspects);
+    verdict.waiting = std::move(judgement.waiting);
     count(judgement, window_end);
     verdict.alarm = persistence_.raised();
     tellOnce(window);

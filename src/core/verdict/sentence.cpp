@@ -190,7 +190,8 @@ std::string sentence(const Alarm& alarm, const std::string& shared) {
     const bool is_known = std::isfinite(reason.usual);
     const bool says_more = !alarm.reason.empty() && alarm.reason.rfind("silent for", 0) != 0;
     return sentence(story) + (is_known ? ", usually every " + gap(reason.usual) : "") +
-           (says_more ? ": " + alarm.reason : "") + (alarm.note.empty() ? "" : "; " + alarm.note);
+           (says_more ? ": " + alarm.reason : "") + (alarm.note.empty() ? "" : "; " + alarm.note) +
+           (alarm.waiting.empty() ? "" : "; " + alarm.waiting);
   }
   return sentence(story) + (is_there || alarm.reason.empty() ? "" : ": " + alarm.reason);
 }

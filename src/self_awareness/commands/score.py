@@ -164,7 +164,7 @@ def _lines(judged: Judged, incident: Incident, details: bool) -> Iterator[str]:
     """Return what happened, the longest alarm of it, and whom that names."""
     place = place_of(judged, incident)
     yield f'  {incident.headline}' + (f' ({place})' if place else '')
-    for further in incident.further:
+    for further in [*([f'{incident.waiting}.'] if incident.waiting else []), *incident.further]:
         yield f'  {further}'
     main = incident.main
     more = len(incident.intervals) - 1

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/core/verdict/sentence.h"
+
 namespace self_awareness::core {
 namespace {
 
@@ -113,6 +115,22 @@ TEST_F(AlarmsTest, WhoIsNamedLaterChangesNeitherIdNorCulprit) {
   EXPECT_EQ(after.suspects.size(), 1U);
   ASSERT_EQ(after.later.size(), 1U);
   EXPECT_EQ(after.later[0].component, "/b");
+}
+
+TEST_F(AlarmsTest, WhoWaitsForTheCulpritIsKeptWhereMostDid) {
+  Verdict next = verdict(kAlarm, {suspect(0, Kind::kSilent)});
+  for (const std::string waiting : {"", "/b waits for /a", "/c waits for /b, /b for /a", ""}) {
+    next.waiting = waiting;
+    add(next);
+  }
+  const std::string said = "/c waits for /b, /b for /a";
+  EXPECT_EQ(alarms_.standing()->waiting, said);
+  EXPECT_EQ(sentence(*alarms_.standing()).substr(sentence(*alarms_.standing()).find(';') + 2),
+            said);
+  next.suspects = {suspect(1, Kind::kSilent)};
+  next.waiting = "/d waits for /c, and /c waits for /b";
+  add(next);
+  EXPECT_EQ(alarms_.standing()->waiting, said) << "of another one";
 }
 
 TEST_F(AlarmsTest, EveryAlarmAndSuspicionHasAnIdOfItsOwn) {

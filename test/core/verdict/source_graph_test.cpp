@@ -70,5 +70,20 @@ TEST(DependentsOf, WhoIsReachedByMessagesNeedsThem) {
   EXPECT_EQ(dependentsOf(graph, "/d"), Names{});
 }
 
+TEST(WaitingFor, TheLongestWayIsToldFromItsEnd) {
+  SourceGraph graph;
+  graph.connect("/lidar", "/scan", "/filter");
+  graph.connect("/lidar", "/scan", "/safety");
+  graph.connect("/filter", "/filtered", "/costmap");
+  graph.connect("/costmap", "/costs", "/lidar");
+  graph.connect("/lidar", "/rosout", "/log");
+  EXPECT_EQ(waitingFor(graph, "/lidar", {"/costmap", "/filter", "/lidar", "/log"}),
+            "/costmap waits for /filter, /filter for /lidar");
+  EXPECT_EQ(waitingFor(graph, "/lidar", {"/costmap", "/filter", "/safety"}),
+            "/costmap waits for /filter, /filter for /lidar (3 nodes wait in all)");
+  EXPECT_EQ(waitingFor(graph, "/lidar", {"/safety"}), "/safety waits for /lidar");
+  EXPECT_EQ(waitingFor(graph, "/lidar", {"/costmap"}), "") << "what it waits for goes on";
+}
+
 }  // namespace
 }  // namespace self_awareness::core

@@ -25,6 +25,7 @@ def test_a_transform_that_is_missing_and_a_first_error_are_told(of_its_own_robot
         incident, = recording['incidents']
         assert (incident['cause'], incident['level']) == (cause, 'WARN'), 'its messages come'
         assert incident['headline'].startswith(f'{cause} sends {said}, as never in training')
+        assert incident['headline'].endswith('to the end of the recording.')
         alarm, = recording['alarms']
         assert 50 < alarm['begin_s'] < 52
 

@@ -32,7 +32,7 @@ def interval(start: float, end: float, suspects: Sequence[NamedSuspect] = (), le
              cleared: bool = True, kind: str = 'silent', busy: Optional[str] = None,
              silence: Optional[Silence] = None, reason: str = '') -> Interval:
     of: Any = SimpleNamespace(culprit=suspects[0].component if suspects else '', kind=kind,
-                              silent=None, reason=reason)
+                              silent=None, reason=reason, waiting='')
     return Interval(of, level, start, end, '', cleared, None, '200 % of the limit', 'overdue',
                     busy, silence, list(suspects), [])
 

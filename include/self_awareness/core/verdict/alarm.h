@@ -33,6 +33,9 @@ struct Alarm {
   /// Why the culprit is one, in words; without a culprit: who is silent, or empty.
   std::string reason;
   std::string note;  ///< what was found out about the culprit since, in words; empty: nothing
+  /// Who waits for the culprit, who for them, and so on, at most, in words; empty: nobody, or it
+  /// is not known.
+  std::string waiting;
   /// What raised it, in words; empty: a suspicion that an alarm left, so far. That is about the
   /// same component as the alarm, until something else is abnormal.
   std::string evidence;

@@ -11,4 +11,10 @@ namespace self_awareness::core {
 /// needs what others write into the log (/rosout).
 std::set<std::string> dependentsOf(const SourceGraph& graph, const std::string& source);
 
+/// Who waits for whom, from the one that is farthest from a source back to it: "/costmap waits for
+/// /filter, /filter for /lidar (3 nodes wait in all)"; empty: nobody does.
+/// @param silent the sources that may wait
+std::string waitingFor(const SourceGraph& graph, const std::string& source,
+                       const std::set<std::string>& silent);
+
 }  // namespace self_awareness::core

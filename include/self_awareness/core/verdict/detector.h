@@ -40,6 +40,7 @@ struct Verdict {
   /// Those of components that an alarm which stood before names for the first time: there may be
   /// another fault. One for each component.
   std::vector<Suspect> new_suspects;
+  std::string waiting;  ///< who waits for the first suspect, as Judgement::waiting
   std::string note;  ///< what was found out about the one who is to blame, since; empty: nothing
 };
 

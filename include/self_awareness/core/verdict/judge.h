@@ -37,6 +37,8 @@ struct Judgement {
   /// If they were asked for; the most likely first. After kMostSuspects, further components whose
   /// evidence alone is abnormal may follow.
   std::vector<Suspect> suspects;
+  /// Where the first suspect is silent, who waits for it (waitingFor()).
+  std::string waiting;
 };
 
 /// Delays, or a pace, that do not count until they have been as in training (docs/method.md,

@@ -97,16 +97,18 @@ bool Strangers::isFlood(const Event& line) {
   return static_cast<double>(++lines.number) > most_lines_;
 }
 
-bool Strangers::addList(const Event& event, Accepted& accepted) {
-  if (event.id < size_ || !news_.isNewList(event.id)) {
-    return false;
-  }
-  if (accepted.isAcceptedStranger(event.id)) {
+void Strangers::addList(const Event& event, Accepted& accepted) {
+  if (event.id < size_ || !news_.isNewList(event.id) || accepted.isAcceptedStranger(event.id)) {
     last_.erase(event.id);
-    return false;
+  } else {
+    last_[event.id] = event.stamp;
   }
-  last_[event.id] = event.stamp;
-  return true;
+}
+
+bool Strangers::anyList(std::int64_t now) const {
+  return std::any_of(last_.begin(), last_.end(), [&](const auto& last) {
+    return now - last.second <= kRateSpan && heard_ && heard_->tellsList(last.first);
+  });
 }
 
 bool Strangers::isKnownByName(EventId id) const {

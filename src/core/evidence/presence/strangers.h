@@ -37,8 +37,10 @@ class Strangers {
   /// then, and had no subscriber, is no news; nor is who is accepted, nor a line below ERROR on
   /// /rosout of who was there, but for a flood of them: least_told without a pause of kRateSpan
   bool add(const Event& event, Accepted& accepted);
-  /// Takes in what messages list besides. @return whether that is news, and not accepted
-  bool addList(const Event& event, Accepted& accepted);
+  /// Takes in what messages list besides.
+  void addList(const Event& event, Accepted& accepted);
+  /// Whether a list that is news, and not accepted, lasts at a time [ns].
+  bool anyList(std::int64_t now) const;
   /// Adds the unknown event types of a window that are not among its suspects yet, as long as
   /// these are fewer than kMostSuspects.
   void addUnknown(const Window& window, std::vector<Suspect>& suspects) const;

@@ -26,10 +26,6 @@ bool WhoSends::add(const Event& event, Accepted& accepted) {
   return strangers_.add(event, accepted);
 }
 
-bool WhoSends::addList(const Event& event, Accepted& accepted) {
-  return strangers_.addList(event, accepted);
-}
-
 void WhoSends::set(const Senders& senders) {
   two_senders_.set(senders.doubled);
   players_.set(senders.played);
@@ -45,6 +41,7 @@ void WhoSends::closeWindow(const Heard& heard, Accepted& accepted) {
   moved_.closeWindow(heard, accepted);
   players_.closeWindow(accepted);
   two_senders_.closeWindow(heard);
+  is_new_list_ = strangers_.anyList(heard.windowEnd());
 }
 
 std::vector<bool> WhoSends::needNotCome(std::vector<bool> may_be_silent) const {
@@ -67,6 +64,9 @@ std::set<std::string> WhoSends::evidence() const {
   }
   if (players_.any()) {
     evidence.insert("player");
+  }
+  if (is_new_list_) {
+    evidence.insert("lists");
   }
   return evidence;
 }

@@ -34,8 +34,8 @@ class WhoSends {
 
   /// Takes in the next event. @return as Strangers::add()
   bool add(const Event& event, Accepted& accepted);
-  /// Takes in what messages list besides. @return as Strangers::addList()
-  bool addList(const Event& event, Accepted& accepted);
+  /// Takes in what messages list besides.
+  void addList(const Event& event, Accepted& accepted) { strangers_.addList(event, accepted); }
   /// As Strangers::addUnknown().
   void addUnknown(const Window& window, std::vector<Suspect>& suspects) const {
     strangers_.addUnknown(window, suspects);
@@ -83,6 +83,7 @@ class WhoSends {
   Moved moved_;
   TwoSenders two_senders_;
   Players players_;
+  bool is_new_list_ = false;  // in the last window
 };
 
 }  // namespace self_awareness::core::evidence

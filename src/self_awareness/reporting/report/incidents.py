@@ -33,6 +33,7 @@ class Incident:
         others: further components that are named.
         headline: in words.
         further: the same of each of the others that fell silent.
+        waiting: who waits for the cause, who for them, and so on; empty: not known.
     """
 
     key: str
@@ -43,6 +44,7 @@ class Incident:
     others: List[str]
     headline: str
     further: List[str] = field(default_factory=list)
+    waiting: str = ''
 
     @property
     def level(self) -> str:
@@ -107,6 +109,7 @@ def as_values(incident: Incident) -> Dict[str, Any]:
     return {
         'headline': incident.headline,
         'further': incident.further,
+        'waiting': incident.waiting or None,
         'level': incident.main.of.level,
         'kind': incident.main.of.kind,
         'cause': incident.cause or None,
@@ -140,4 +143,6 @@ def _incident(intervals: List[Interval], main: Interval, together: List[str],
     further = {each.component: of_another(each) for each in reversed(main.named)
                if each.component in others and each.abnormal and each.silence is not None}
     return Incident('', intervals, main, together, victims, others,
-                    headline(main, together, len(alarms)), list(further.values())[::-1])
+                    headline(main, together, len(alarms)), list(further.values())[::-1],
+                    max((each.of.waiting for each in alarms
+                         if each.of.culprit == main.of.culprit), key=len, default=''))

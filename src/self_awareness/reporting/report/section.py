@@ -175,6 +175,8 @@ def _summary(judged: Judged, happened: List[Incident]) -> Summary:
     main = worst.main
     if main.busy is not None:
         answers.append(('But', main.busy))
+    if worst.waiting:
+        answers.append(('Who waits', f'{worst.waiting}.'))
     for further in worst.further:
         answers.append(('And', further))
     if worst.victims:

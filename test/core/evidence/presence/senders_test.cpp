@@ -122,8 +122,8 @@ class NewsTest : public testing::Test {
   static EventType list(const std::set<std::string>& values, const std::string& field = "f.name") {
     return {"/d", "/tf", typeOfList("F", {field, values})};
   }
-  /// What is said of a list that comes after recordings with these; empty: nothing.
-  static std::string said(const Lists& recordings, const EventType& next) {
+  /// Learned from recordings with these.
+  static std::shared_ptr<const Model> learnedFrom(const Lists& recordings) {
     std::vector<EventType> types = kRobot;
     types.push_back({"/a", "/goal", "G[status=3]"});
     std::vector<Events> all;
@@ -138,8 +138,12 @@ class NewsTest : public testing::Test {
       all.back().push_back({all.back().back().stamp, id});
       all.back().push_back({all.back().back().stamp, static_cast<EventId>(kRobot.size())});
     }
-    const auto model = std::make_shared<Model>(
+    return std::make_shared<const Model>(
         watchAll(countsOf(all, types), countsOf(std::vector<Events>(), types)));
+  }
+  /// What is said of a list that comes after recordings with these; empty: nothing.
+  static std::string said(const Lists& recordings, const EventType& next) {
+    const std::shared_ptr<const Model> model = learnedFrom(recordings);
     const auto heard = std::make_shared<Vocabulary>(model->vocabulary());
     const std::optional<Reason> reason = News(*model, heard).reasonOf(heard->intern(next));
     return reason ? reason->words : "";
@@ -162,6 +166,35 @@ TEST_F(NewsTest, WhoListedSomethingOnceMayListOtherThings) {
   EXPECT_EQ(said({{}, {}, {"a", "b"}, {"a", "b"}}, list({"b"})), "") << "too many to tell apart";
   EXPECT_EQ(said({{"a", "b"}, {"a", "b"}}, list({})), "");
   EXPECT_EQ(said({{"a", "b"}, {"a", "b"}}, list({"b"}, "g.name")), "") << "of another field";
+}
+
+TEST_F(NewsTest, ANewListIsASuspicionWhileItLastsUnlessItIsAccepted) {
+  const std::shared_ptr<const Model> model = learnedFrom({{"arm", "laser"}, {"arm", "laser"}});
+  const auto heard = std::make_shared<Vocabulary>(model->vocabulary());
+  const EventId lacking = heard->intern(list({"arm"}));
+  const auto judge =
+      makeJudge(model, allLimits(*model, kNone), kWindow, std::make_shared<SourceGraph>(), heard);
+  const auto judged = [&](std::int64_t end) {
+    Window window;
+    window.start = end - kWindow;
+    return judge->judge(window, end, NameSuspects::kIfUnusual);
+  };
+  EXPECT_FALSE(judge->add({kSecond, lacking})) << "it is no message";
+  const Judgement news = judged(2 * kSecond);
+  EXPECT_TRUE(news.suspicious);
+  EXPECT_FALSE(news.abnormal) << "its messages come";
+  EXPECT_EQ(news.evidence, "lists");
+  ASSERT_EQ(news.suspects.size(), 1U);
+  EXPECT_EQ(news.suspects[0].id, lacking);
+  const auto isTold = [&](std::int64_t end) {
+    return judged(end).evidence.find("lists") != std::string::npos;
+  };
+  EXPECT_FALSE(isTold(4 * kSecond)) << "it did not come again";
+  judge->add({5 * kSecond, lacking});
+  EXPECT_TRUE(isTold(6 * kSecond));
+  judge->accept(allOf({accepted("/d", "", Kind::kStranger)}));
+  judge->add({6 * kSecond, lacking});
+  EXPECT_FALSE(isTold(7 * kSecond));
 }
 
 TEST_F(NewsTest, ALevelBelowErrorIsTheNodesOwn) {
