@@ -1,31 +1,14 @@
 """docs/live.md: the calls of its table are typed as written, while a node of the robot is dead."""
 from __future__ import annotations
 
-import random
 import re
 from typing import Any, Dict, List, Tuple
 
 import yaml
-from conftest import wait_until, write_bag
-from page_reader import BACKGROUND, DOCS, Reader
+from conftest import wait_until
+from page_reader import BACKGROUND, DOCS, NODES, Reader
 
 ID = re.compile(r'\b\d{19}\b')
-NODES = (('/camera', '/image', 12.5), ('/base', '/odom', 10.0))
-"""Name, topic and rate [Hz]."""
-
-
-def learned(reader: Reader) -> None:
-    """Write a model of the nodes, whose periods vary by 30 %."""
-    rng = random.Random(1)
-    for number in range(2):
-        messages = []
-        for source, topic, rate in NODES:
-            stamp = 1000.0 * (number + 1)
-            while stamp < 1000.0 * (number + 1) + 120.0:
-                messages.append((stamp, source, topic))
-                stamp += rng.uniform(0.7, 1.3) / rate
-        write_bag(reader.folder / f'{number}.bag', sorted(messages))
-    reader.type('rosrun self_awareness train 0.bag 1.bag -o robot.model')
 
 
 def calls(service: str) -> List[str]:
@@ -49,7 +32,7 @@ def answer(reader: Reader, call: str) -> Tuple[bool, str]:
 
 
 def test_all_that_somebody_wants_is_done_as_the_page_says(reader: Reader) -> None:
-    learned(reader)
+    reader.learn()
     reader.type(f'{BACKGROUND}\nroslaunch self_awareness monitor.launch model:=robot.model')
     for name, topic, rate in reversed(NODES):
         reader.type(f'{BACKGROUND}\nrosrun self_awareness talker __name:={name[1:]} '

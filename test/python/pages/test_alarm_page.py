@@ -4,9 +4,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from page_reader import DOCS, Reader, blocks
+from page_reader import DOCS, Reader, blocks, types
 
 
+@types('alarm.md', 2, 3)
 def test_the_simulated_alarm_is_as_the_page_says(reader: Reader) -> None:
     said = ''.join(reader.type(block) for block in blocks('alarm.md', '## A simulated one'))
     expected = [line for line in (DOCS / 'alarm.md').read_text(encoding='utf-8').splitlines()
@@ -18,6 +19,7 @@ def test_the_simulated_alarm_is_as_the_page_says(reader: Reader) -> None:
     assert '/slam' in (reader.folder / 'half.html').read_text()
 
 
+@types('alarm.md', 1)
 def test_the_real_alarm_is_as_the_page_says(reader: Reader, shared: Path) -> None:
     for bag in (shared / 'data' / 'wheeled_robot').glob('feb13_*.bag'):
         (reader.folder / bag.name).symlink_to(bag)

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from conftest import wait_until
-from page_reader import BACKGROUND, Reader, blocks
+from page_reader import BACKGROUND, Reader, blocks, types
 from recorded_logs import write_log
 
 from self_awareness import TrainedModel
@@ -27,6 +27,7 @@ def write_hour(path: Path, start: int) -> None:
     write_log(path, sorted(messages), start)
 
 
+@types('learn.md', 0, 1)
 def test_two_hours_are_learned_and_learned_again_by_the_commands_that_are_printed(
         reader: Reader) -> None:
     launch, reload, *_ = blocks('learn.md')
@@ -49,6 +50,7 @@ def test_two_hours_are_learned_and_learned_again_by_the_commands_that_are_printe
     assert 'success: True' in reader.type(reload)
 
 
+@types('learn.md', *range(2, 9))
 def test_step_by_step_and_months_later(reader: Reader) -> None:
     """All other commands, on days of the simulated robot."""
     _, _, record, train, inject, paper, monitor, later, changed = blocks('learn.md')

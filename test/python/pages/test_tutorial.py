@@ -3,9 +3,10 @@ from __future__ import annotations
 
 import re
 
-from page_reader import Reader, blocks
+from page_reader import Reader, blocks, types
 
 
+@types('tutorial.md')
 def test_from_nothing_to_an_alarm_and_its_report(reader: Reader) -> None:
     said = {block: reader.type(block) for block in blocks('tutorial.md')}
     by_command = {command: text for block, text in said.items() for command in block.splitlines()
