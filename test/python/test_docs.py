@@ -168,6 +168,20 @@ def test_the_pages_are_few_and_short() -> None:
     assert len(words) <= 28000
 
 
+def _sentences(page: Path) -> Set[str]:
+    """Return the sentences of a page that have seven words or more, without their marks."""
+    text = re.sub(r'```.*?```', '', page.read_text(encoding='utf-8'), flags=re.DOTALL)
+    text = re.sub(r'[|*`\s]+', ' ', re.sub(r'\[([^\]]*)\]\([^)]*\)', r'\1', text))
+    return {each.lower() for each in re.split(r'(?<=[.:;]) ', text) if len(each.split()) >= 7}
+
+
+def test_no_sentence_is_told_on_two_pages() -> None:
+    written = [page for page in PAGES if page.name != 'research.md']
+    told = [sentence for page in written for sentence in _sentences(page)]
+    assert len(told) > 1000
+    assert sorted({each for each in told if told.count(each) > 1}) == []
+
+
 OF_DEVELOPERS = ('docs/method.md', 'docs/developers.md',
                  'docs/performance.md', 'docs/evaluation/')
 # Sentences that had to be read twice.

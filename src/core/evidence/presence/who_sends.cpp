@@ -74,8 +74,11 @@ std::set<std::string> WhoSends::evidence() const {
 std::vector<Suspect> WhoSends::causes(const Window& window, const Scorer& scorer) const {
   std::vector<Suspect> causes = two_senders_.suspects(scorer.heard());
   append(players_.suspects(), causes);
-  if (const std::vector<Suspect> all = strangers(window, scorer); !all.empty()) {
-    causes.push_back(all.front());
+  for (const Suspect& stranger : strangers(window, scorer)) {
+    if (stranger.reason.topics.empty()) {  // else one that is known, and says something new
+      causes.push_back(stranger);
+      break;
+    }
   }
   return causes;
 }

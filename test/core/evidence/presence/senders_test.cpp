@@ -10,6 +10,7 @@
 #include "../../verdict/accepted.h"
 #include "../tracks.h"
 #include "core/evidence/presence/news.h"
+#include "core/evidence/presence/who_sends.h"
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/stream/listed.h"
 #include "self_awareness/core/verdict/alarm.h"
@@ -195,6 +196,20 @@ TEST_F(NewsTest, ANewListIsASuspicionWhileItLastsUnlessItIsAccepted) {
   judge->accept(allOf({accepted("/d", "", Kind::kStranger)}));
   judge->add({6 * kSecond, lacking});
   EXPECT_FALSE(isTold(7 * kSecond));
+}
+
+TEST_F(NewsTest, WhoSaysSomethingNewExplainsNothingElse) {
+  const std::shared_ptr<const Model> model = learnedFrom({{"arm", "laser"}, {"arm", "laser"}});
+  const auto heard = std::make_shared<Vocabulary>(model->vocabulary());
+  Accepted accepted(model, heard);
+  Scorer scorer(model, kWindow);
+  scorer.closeWindow(kSecond);
+  WhoSends who_sends(model, heard, std::make_shared<SourceGraph>(),
+                     std::vector<bool>(model->size(), false));
+  who_sends.addList({kSecond, heard->intern(list({"arm"}))}, accepted);
+  who_sends.closeWindow(scorer.heard(), accepted);
+  EXPECT_EQ(who_sends.alone({}, scorer, false).size(), 1U);
+  EXPECT_TRUE(who_sends.causes({}, scorer).empty());
 }
 
 TEST_F(NewsTest, ALevelBelowErrorIsTheNodesOwn) {
