@@ -191,8 +191,8 @@ def _trained(data: Path, tuning: Tuning, *parts: BagPart) -> Trained:
 
 
 def _learned(system: System, case: Case, data: Path) -> Tuple[RecordingEvents, Judged, int]:
-    """Return a recording, what a system that has learned says of it, and how many event types its
-    training has."""
+    """Return a recording, what a system that has learned says of it, and how many event types of
+    messages its training has."""
     trained = _trained(data, Tuning(), case.training).model  # for the encoding only
     found = [recordings.read(trained, _below(data, part))
              for part in (case.training, case.calibration, BagPart(case.judged))]
@@ -201,7 +201,8 @@ def _learned(system: System, case: Case, data: Path) -> Tuple[RecordingEvents, J
                        attributes=each.attributes) for each in found)
     system.train([training])
     system.calibrate([calibration])
-    return found[-1], system.judge(judged), len(trained.event_types)
+    messages = sum(kind.is_message for kind in trained.event_types)
+    return found[-1], system.judge(judged), messages
 
 
 def _below(data: Path, part: BagPart) -> BagPart:
