@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bindings.h"
+#include "core/evidence/count/starts.h"
 #include "self_awareness/core/verdict/suspect.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
@@ -213,6 +214,18 @@ void bindModel(py::module& m) {
             return self;
           },
           "A small copy, with only the counts that the evidence detector judges by.")
+      .def(
+          "starts_of",
+          [](const TrainedModel& self, const std::vector<core::RecordingInfo>& recordings) {
+            std::vector<core::evidence::Span> spans;
+            spans.reserve(recordings.size());
+            for (const core::RecordingInfo& each : recordings) {
+              spans.push_back({each.start, each.end, each.robot_start, each.robot});
+            }
+            return core::evidence::numberOfStarts(spans,
+                                                  core::toNanoseconds(self.tuning.start_time));
+          },
+          py::arg("recordings"), "How many starts of robots recordings are of.")
       .def("coverage", &TrainedModel::coverage,
            "Coverage of each component by the evidence detector; none: not calibrated.")
       .def_property_readonly(

@@ -33,24 +33,22 @@ std::set<std::string> ListedField::read(const std::uint8_t* data, std::size_t si
   MessageCursor cursor(data, size);
   cursor.cross(field_.before, pass);
   const std::uint64_t length = field_.length ? *field_.length : cursor.number<std::uint32_t>();
-  const bool is_text = field_.field.type == "string";
   std::set<std::string> values;
-  std::optional<double> largest;
+  std::optional<double> largest;  // of numbers
   for (std::uint64_t i = 0; i < length && !field_.element.empty(); ++i) {
     MessageCursor element = cursor;
     cursor.cross(field_.element, pass);
     element.cross(field_.field.before, pass);
-    MessageCursor value = element;
-    const double number = is_text ? 0 : withNumber(field_.field.type, value, [](auto found) {
-      return static_cast<double>(found);
-    });
-    if (is_text || !largest || number > *largest) {
-      largest = number;
-      if (!is_text) {
-        values.clear();
-      }
+    if (field_.field.type == "string") {
       values.insert(textOf(field_.field.type, element));
+      continue;
     }
+    withNumber(field_.field.type, element, [&](auto number) {
+      if (!largest || static_cast<double>(number) > *largest) {
+        largest = static_cast<double>(number);
+        values = {std::to_string(number)};
+      }
+    });
   }
   return values;
 }

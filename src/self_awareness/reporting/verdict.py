@@ -6,7 +6,7 @@ import os
 import shlex
 from typing import Any, Dict, List, Sequence
 
-from self_awareness import HOURS_OF_ROBOTS, Coverage, Recording, TrainedModel
+from self_awareness import HOURS_OF_ROBOTS, Coverage, TrainedModel
 from self_awareness.judging import PAPER
 from self_awareness.reporting import coverage_text
 from self_awareness.reporting.text import (aligned, duration, first_lines, first_of, number_of,
@@ -14,7 +14,6 @@ from self_awareness.reporting.text import (aligned, duration, first_lines, first
 from self_awareness.stamps import SECOND_NS
 
 _SOON_S = 1.0
-_SAME_START_NS = 60 * SECOND_NS  # docs/method.md, section 3.1
 _MOST_NAMED, _MOST_LINES = 3, 8
 
 
@@ -58,25 +57,12 @@ def has_limits(model: TrainedModel) -> bool:
     return model.calibration is not None and model.calibration.method == 'held-out'
 
 
-def starts(recordings: Sequence[Recording]) -> int:
-    """Return how many starts of robots recordings are of."""
-    known = {(each.robot, each.robot_start) for each in recordings if each.robot_start}
-    number = len(known)
-    ends: Dict[str, int] = {}
-    for each in sorted((each for each in recordings if not each.robot_start),
-                       key=lambda each: each.start):
-        end = ends.get(each.robot)
-        number += end is None or each.start - end > _SAME_START_NS
-        ends[each.robot] = max(each.end, end or each.end)
-    return number
-
-
 def _learned_from(model: TrainedModel) -> str:
     held_out = (model.calibration.recordings
                 if model.calibration is not None and has_limits(model) else [])
     recordings = [*model.recordings, *held_out]
     seconds = sum(each.end - each.start for each in recordings) / SECOND_NS
-    return f'{number_of(starts(recordings), "start")}, {duration(seconds)}'
+    return f'{number_of(model.starts_of(recordings), "start")}, {duration(seconds)}'
 
 
 def _noun(model: TrainedModel) -> str:
@@ -150,4 +136,4 @@ def _record_next(model: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> Lis
     return [f'record next: {"; ".join(buys)}', *(
         ['all recordings count as one start of the robot: record event logs, which say when it '
          'was started, or leave a minute or more between bags of different starts']
-        if len(model.recordings) > 1 and starts(model.recordings) == 1 else [])]
+        if len(model.recordings) > 1 and model.starts_of(model.recordings) == 1 else [])]

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <utility>
 
+#include "core/evidence/presence/news.h"
 #include "core/evidence/presence/strangers.h"
 
 namespace self_awareness::core::evidence {
@@ -13,14 +14,6 @@ namespace {
 constexpr std::int64_t kLongEnough = 4 * kNanosecondsPerSecond;
 constexpr double kFewestEvents = 4;
 constexpr double kOtherRate = 2;  // times as often, or as seldom, is another rate
-
-/// An event type without the value of its type field; none: it has no value.
-std::optional<EventType> withoutValue(const EventType& type) {
-  const std::size_t end = type.type.find('[');
-  return end == std::string::npos
-             ? std::nullopt
-             : std::optional(EventType{type.source, type.scope, type.type.substr(0, end)});
-}
 
 }  // namespace
 

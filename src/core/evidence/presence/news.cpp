@@ -18,11 +18,6 @@ constexpr std::size_t kMostNamed = 3;
 const std::string kLevel = "status.level";
 const std::set<std::string> kBelowError{"0", "1"};
 
-EventType withoutBrackets(EventType type) {
-  type.type.erase(std::min(type.type.find('['), type.type.size()));
-  return type;
-}
-
 std::size_t recordingsWith(EventId id, const Statistics& counts) {
   const auto& all = counts.recordings();
   return static_cast<std::size_t>(std::count_if(all.begin(), all.end(), [id](const auto& each) {
@@ -70,18 +65,26 @@ Reason newOf(const EventType& type, const std::string& what) {
 
 }  // namespace
 
+std::optional<EventType> withoutValue(const EventType& type) {
+  const std::size_t end = type.type.find('[');
+  return end == std::string::npos
+             ? std::nullopt
+             : std::optional(EventType{type.source, type.scope, type.type.substr(0, end)});
+}
+
 News::News(const Model& model, std::shared_ptr<const Vocabulary> heard)
     : heard_(std::move(heard)) {
   for (EventId id = 0; id < model.size(); ++id) {
     const EventType& type = model.vocabulary().at(id);
+    const std::optional<EventType> any = withoutValue(type);
     if (const std::optional<Listed> list = listedBy(type)) {
-      Lists& lists = lists_[{withoutBrackets(type), list->field}];
+      Lists& lists = lists_[{any.value(), list->field}];
       const std::size_t recordings = recordingsWith(id, model.statistics());
       lists.fewest_recordings =
           lists.all.empty() ? recordings : std::min(lists.fewest_recordings, recordings);
       lists.all.push_back(list->values);
-    } else if (model.vocabulary().isMessage(id) && type.type.find('[') != std::string::npos) {
-      valued_.insert(withoutBrackets(type));
+    } else if (any && model.vocabulary().isMessage(id)) {
+      valued_.insert(*any);
     }
   }
 }
@@ -95,15 +98,19 @@ std::optional<Reason> News::reasonOf(EventId id) const {
     return std::nullopt;
   }
   const EventType& type = heard_->at(id);
-  const std::size_t value = type.type.find('[');
+  const std::optional<EventType> any = withoutValue(type);
+  if (!any) {
+    return std::nullopt;
+  }
   if (!heard_->tellsList(id)) {
-    return valued_.count(withoutBrackets(type)) == 0
+    const std::size_t value = any->type.size() + 1;
+    return valued_.count(*any) == 0
                ? std::nullopt
-               : std::optional(newOf(
-                     type, "with " + type.type.substr(value + 1, type.type.size() - value - 2)));
+               : std::optional(
+                     newOf(type, "with " + type.type.substr(value, type.type.size() - value - 1)));
   }
   const Listed list = listedBy(type).value();
-  const auto known = lists_.find({withoutBrackets(type), list.field});
+  const auto known = lists_.find({*any, list.field});
   const bool invents =
       list.values.empty() || known == lists_.end() ||
       known->second.fewest_recordings < kFewestRecordings ||
