@@ -85,7 +85,8 @@ void bindAlarms(py::module& m) {
       .def_readonly("over", &Alarm::over, "False: it stood until the end of the recording")
       .def_property_readonly(
           "kind", [](const Alarm& self) { return core::toString(self.kind); },
-          "of the culprit's reason, or: busy machine, all silent, new mode, two senders")
+          "of the culprit's reason, or: busy machine, all silent, new mode, two senders,\n"
+          "slower clock")
       .def_readonly("culprit", &Alarm::culprit,
                     "component; empty: there is none, or nobody stands out")
       .def_readonly("reason", &Alarm::reason,

@@ -14,6 +14,7 @@
 #include "core/evidence/excuse/accepted.h"
 #include "core/evidence/excuse/busy_machine.h"
 #include "core/evidence/excuse/settling.h"
+#include "core/evidence/excuse/slower_clock.h"
 #include "core/evidence/excuse/stopped_together.h"
 #include "core/evidence/explain/excess.h"
 #include "core/evidence/explain/explanation.h"
@@ -122,6 +123,7 @@ class Judge : public core::Judge {
   Accepted accepted_;
   Settling settling_;
   StoppedTogether stopped_together_;
+  SlowerClock slower_clock_;
   BusyMachine busy_machine_;
   std::int64_t settle_time_ = 0;  // [ns]
   std::vector<double> shares_;    // of its limit that each track has reached
@@ -148,6 +150,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       accepted_(model_, std::move(heard)),
       settling_(model_),
       stopped_together_(model_, upstream_, std::move(graph)),
+      slower_clock_(model_, explanation_),
       busy_machine_(model_, explanation_),
       shares_(model_->tracks().size(), 0),
       tell_shares_(std::move(shares)),
@@ -188,6 +191,7 @@ void Judge::restart() {
   unsubscribed_.restart();
   settling_.restart();
   stopped_together_.restart();
+  slower_clock_.restart();
   busy_machine_.restart();
   excesses_.restart();
 }
@@ -216,7 +220,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   judgement.abnormal = *judgement.score < kThreshold;
   judgement.certain = never_heard_.share() > 1 || (largest > 1 && isCertain());
   judgement.suspicious = never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy ||
-                         !who_sends_.evidence().empty();
+                         !who_sends_.evidence().empty() || !slower_clock_.suspects().empty();
   judgement.evidence = evidenceOf(judgement);
   const bool somebody = largest > 1 || never_heard_.share() > 0 || unsubscribed_.any() ||
                         (judgement.busy && judgement.busy->late > 0);
@@ -226,6 +230,10 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
              (suspects != NameSuspects::kNever && !who_sends_.evidence().empty())) {
     // Who is within his own range is no suspect because somebody else is unknown.
     judgement.suspects = who_sends_.alone(window, scorer_, suspects == NameSuspects::kAlways);
+  }
+  if (suspects != NameSuspects::kNever) {
+    const std::vector<Suspect>& faster = slower_clock_.suspects();
+    judgement.suspects.insert(judgement.suspects.end(), faster.begin(), faster.end());
   }
   accepted_.leaveOut(judgement.suspects);
   judgement.waiting = waitingIn(judgement.suspects);
@@ -271,6 +279,7 @@ void Judge::excuse(const Window& window, std::int64_t end, Judgement& judgement)
       *unusual_, *limits_, scorer_, who_sends_.silences(end), accepted_.mayBeSilent());
   judgement.silent = std::move(together.silent);
   judgement.mode = std::move(together.mode);
+  slower_clock_.excuse(*unusual_, scorer_, events_);
   judgement.busy = busy_machine_.excuse(*unusual_, scorer_, events_);
   if (judgement.busy && judgement.silent && judgement.silent->others_go_on) {
     judgement.silent.reset();  // whom a busy machine holds up
@@ -280,6 +289,7 @@ void Judge::excuse(const Window& window, std::int64_t end, Judgement& judgement)
     tell_shares_(window, {shares_, never_heard_.shares()});
   }
   takeBack(Excuse::kNewMode);
+  takeBack(Excuse::kSlowerClock);
 }
 
 void Judge::takeBack(Excuse excuse) {
@@ -319,6 +329,9 @@ std::string Judge::evidenceOf(const Judgement& judgement) const {
   }
   if (judgement.busy) {
     channels.insert("busy");
+  }
+  if (!slower_clock_.suspects().empty()) {
+    channels.insert("clock");
   }
   if (never_heard_.share() > 0) {
     channels.insert("never heard");

@@ -47,6 +47,7 @@ Acceptance::Extent Acceptance::extent() const {
     case Kind::kBusyMachine:
     case Kind::kAllSilent:
     case Kind::kTwoSenders:
+    case Kind::kSlowerClock:
       return Extent::kNothing;
     case Kind::kNewMode:
       return Extent::kMode;

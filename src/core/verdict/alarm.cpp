@@ -75,22 +75,29 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
   }
 }
 
-/// Takes in on how many topics somebody is there who should not be: that shows with time.
+/// Takes in on how many topics somebody is there who should not be, or by whose clock: that shows
+/// with time.
 void growWith(const Verdict& verdict, Alarm& alarm) {
   for (Suspect& suspect : alarm.suspects) {
     for (const Suspect& now : verdict.suspects) {
       if (now.id == suspect.id && now.reason.kind == suspect.reason.kind &&
-          (now.reason.kind == Kind::kTwoSenders || !now.reason.topics.empty())) {
+          (isShared(now.reason.kind) || !now.reason.topics.empty())) {
         suspect.reason = now.reason;
       }
     }
   }
   const Reason& first = alarm.suspects.front().reason;
-  if (alarm.kind == first.kind && (first.kind == Kind::kTwoSenders || !first.topics.empty())) {
+  if (alarm.kind == first.kind && (isShared(first.kind) || !first.topics.empty())) {
     alarm.reason = first.words;
   }
-  if (alarm.kind == Kind::kTwoSenders) {
-    alarm.culprit.clear();  // who has the name of another one is not to blame
+  for (const Suspect& now : verdict.suspects) {
+    if (now.reason.kind == Kind::kSlowerClock && alarm.culprit == now.component) {
+      alarm.kind = now.reason.kind;
+      alarm.reason = now.reason.words;
+    }
+  }
+  if (isShared(alarm.kind)) {
+    alarm.culprit.clear();  // as of who has the name of another one
   }
 }
 

@@ -131,8 +131,7 @@ std::string sentence(const Story& story) {
     return ofAll(story);
   }
   const bool is_there = story.kind == Kind::kStranger && !story.reason.empty();
-  if (story.kind == Kind::kBusyMachine || story.kind == Kind::kNewMode ||
-      story.kind == Kind::kTwoSenders || is_there) {
+  if (isShared(story.kind) || is_there) {
     return story.reason + ", " + often(story, spanOf(story));
   }
   if (story.components.empty()) {

@@ -58,6 +58,8 @@ std::string toString(Kind kind) {
       return "new mode";
     case Kind::kTwoSenders:
       return "two senders";
+    case Kind::kSlowerClock:
+      return "slower clock";
   }
   throw std::invalid_argument("a kind without a name");
 }
@@ -66,7 +68,7 @@ std::optional<Kind> kindOf(const std::string& name) {
   if (name == "died") {  // as files of before have it
     return Kind::kSilent;
   }
-  for (int kind = 0; kind <= static_cast<int>(Kind::kTwoSenders); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(Kind::kSlowerClock); ++kind) {
     if (toString(static_cast<Kind>(kind)) == name) {
       return static_cast<Kind>(kind);
     }
@@ -84,6 +86,11 @@ bool isAbsence(Kind kind) {
 
 bool isSilence(Kind kind) {
   return kind == Kind::kSilent || kind == Kind::kTopicSilent || kind == Kind::kUnanswered;
+}
+
+bool isShared(Kind kind) {
+  return kind == Kind::kBusyMachine || kind == Kind::kAllSilent || kind == Kind::kNewMode ||
+         kind == Kind::kTwoSenders || kind == Kind::kSlowerClock;
 }
 
 Reason strangerIn(std::size_t events) {
@@ -152,6 +159,17 @@ Reason comesFromTwo(const std::set<std::pair<std::string, std::string>>& topics,
                                      : number(topics.size(), "topic")) +
                  " of " + of + (topics.size() == 1 || all ? " comes" : " come") +
                  " from two senders of one name";
+  return reason;
+}
+
+Reason sendsFaster(std::size_t number, double factor) {
+  Reason reason;
+  reason.kind = Kind::kSlowerClock;
+  char text[120];
+  std::snprintf(text, sizeof text,
+                "the simulation may run slower: %zu nodes send %.1f times as often by its clock",
+                number, factor);
+  reason.words = text;
   return reason;
 }
 

@@ -44,6 +44,15 @@ def test_while_a_simulation_stands_still_nobody_is_fast(of_its_own_robot) -> Non
     assert recording['alarms'] == []
 
 
+def test_a_simulation_that_runs_slower_blames_nobody(of_its_own_robot) -> None:
+    recording, = of_its_own_robot(Path(__file__).parent / 'slower_simulation.py', 'slower.bag')
+    incident, = recording['incidents']
+    assert (incident['cause'], incident['kind'], incident['level']) == (
+        None, 'slower clock', 'WARN')
+    assert incident['headline'].startswith(
+        'The simulation may run slower: 2 nodes send 2.5 times as often by its clock, from 50.')
+
+
 def test_goals_that_never_failed_before_are_told(of_its_own_robot) -> None:
     recording, = of_its_own_robot('34_goals_aborted', 'abort.bag')
     incident, = recording['incidents']

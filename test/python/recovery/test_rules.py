@@ -59,7 +59,7 @@ def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
     of_monitor = {value for name, value in vars(SelfAwareness).items()
                   if name.isupper() and isinstance(value, str)}
     assert of_monitor - set(KINDS) == {'stranger', 'not subscribed', 'busy machine', 'all silent',
-                                       'new mode', 'two senders'}
+                                       'new mode', 'two senders', 'slower clock'}
     assert set(KINDS) < of_monitor
 
 

@@ -123,6 +123,7 @@ TEST(Kinds, AreThoseOfTheMessage) {
   EXPECT_EQ(core::toString(Kind::kAllSilent), Message::ALL_SILENT);
   EXPECT_EQ(core::toString(Kind::kNewMode), Message::NEW_MODE);
   EXPECT_EQ(core::toString(Kind::kTwoSenders), Message::TWO_SENDERS);
+  EXPECT_EQ(core::toString(Kind::kSlowerClock), Message::SLOWER_CLOCK);
 }
 
 }  // namespace

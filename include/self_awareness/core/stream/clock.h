@@ -15,6 +15,11 @@ constexpr std::int64_t kLongestSilence = 3600 * kNanosecondsPerSecond;
 /// A smaller step forward [ns] is not told from how much a busy robot's delays vary.
 constexpr std::int64_t kSmallestStep = 3 * kNanosecondsPerSecond / 10;
 
+/// Whether a stamp [ns] is of simulated time: that starts at 0, and no robot of ROS ran in 1973.
+constexpr bool isSimulated(std::int64_t stamp) {
+  return stamp < 100000000 * kNanosecondsPerSecond;
+}
+
 /// Whether the clock was set between two events in a row: delays across such a step mean nothing.
 /// @param previous stamp of the earlier one of the two [ns]
 /// @param current stamp of the one after it [ns]

@@ -48,11 +48,12 @@ enum class Kind {
   kAllSilent,     ///< of an alarm: nobody is heard any more
   kNewMode,       ///< of a suspicion: some that do not hear each other stopped, and others go on
   kTwoSenders,    ///< its topics come from two senders of its name
+  kSlowerClock,   ///< it keeps another time than the clock of the simulation, as others do
 };
 
 /// "silent", "topic silent", "unanswered", "slow", "fast", "late", "early", "out of order", "never
 /// came", "stranger", "not subscribed", "stale", "lossy", "other size", "stuck", "busy machine",
-/// "all silent", "new mode" or "two senders".
+/// "all silent", "new mode", "two senders" or "slower clock".
 std::string toString(Kind kind);
 /// The kind of this name; none: there is no such kind.
 std::optional<Kind> kindOf(const std::string& name);
@@ -62,6 +63,9 @@ bool isMissing(Kind kind);
 bool isAbsence(Kind kind);
 /// The same, of something that was heard before.
 bool isSilence(Kind kind);
+
+/// Whether it is of what components share: none of them is to blame.
+bool isShared(Kind kind);
 
 /// Units of a reason's values; a channel may have others.
 namespace unit {
@@ -116,6 +120,10 @@ Reason playsOn(const std::string& player, const std::vector<std::string>& topics
 /// @param topics by component, all that do
 /// @param all whether the components have no others
 Reason comesFromTwo(const std::set<std::pair<std::string, std::string>>& topics, bool all);
+
+/// Why components are suspects that send more often by the same factor.
+/// @param number of them
+Reason sendsFaster(std::size_t number, double factor);
 
 /// Who may have made a window abnormal, and why (docs/method.md, sections 2.5 and 6).
 struct Suspect {

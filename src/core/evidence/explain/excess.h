@@ -13,10 +13,11 @@ namespace self_awareness::core::evidence {
 /// Why no component is to blame for what is unusual.
 enum class Excuse {
   kNone,
-  kAccepted,   ///< somebody said that it is normal
-  kNewMode,    ///< others stopped with it, which do not hear each other
-  kAllSilent,  ///< all fell silent with it, or all of its computer
-  kBusy        ///< the machine has too little time for all
+  kAccepted,    ///< somebody said that it is normal
+  kNewMode,     ///< others stopped with it, which do not hear each other
+  kAllSilent,   ///< all fell silent with it, or all of its computer
+  kBusy,        ///< the machine has too little time for all
+  kSlowerClock  ///< the simulation runs slower than in training
 };
 
 /// That something is unusual: who, what, since when, how much (docs/method.md, section 6).

@@ -72,7 +72,8 @@ def _reason(main: Interval) -> str:
     if main.of.kind == 'busy machine':
         return main.busy or 'the machine was busy'
     is_there = main.first is not None and main.first.of.reason.topics
-    return main.of.reason if main.of.kind in ('new mode', 'two senders') or is_there else ''
+    shared = main.of.kind in ('new mode', 'two senders', 'slower clock')
+    return main.of.reason if shared or is_there else ''
 
 
 def _back(main: Interval, together: Sequence[str]) -> str:

@@ -1,0 +1,98 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "../judged.h"
+#include "self_awareness/core/verdict/alarm.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::int64_t kHour = 3600 * kSecond;
+constexpr std::int64_t kYears = 400000 * kHour;
+constexpr std::int64_t kFault = 60 * kSecond;  // after the start
+constexpr EventId kTypesOfRobot = 5;
+
+/// A robot in simulated time, with four timers; the last type answers to the one before it.
+/// @param faster so many times as often from kFault on, of each that does not answer
+Events robot(std::int64_t start, const std::vector<double>& faster = {1, 1, 1, 1}) {
+  Events events;
+  for (EventId id = 0; id < faster.size(); ++id) {
+    const std::int64_t period = (60 + 30 * static_cast<std::int64_t>(id)) * kMillisecond;
+    const auto then = static_cast<std::int64_t>(static_cast<double>(period) / faster[id]);
+    Events of_type = timer(id, start + id * kMillisecond, start + kFault, period);
+    const Events after = timer(id, of_type.back().stamp + then, start + 2 * kFault, then);
+    of_type.insert(of_type.end(), after.begin(), after.end());
+    events = together({events, of_type});
+    if (id + 1U == faster.size()) {
+      events = together({events, answers(id + 1, of_type, 5 * kMillisecond)});
+    }
+  }
+  return events;
+}
+
+class SlowerClockTest : public testing::Test {
+ protected:
+  SlowerClockTest() {
+    for (const EventType& type : types_) {
+      vocabulary_.intern(type);
+    }
+  }
+  /// All that is told of a recording.
+  std::vector<Alarm> toldOf(const Events& events) const {
+    std::vector<Alarm> told;
+    Alarms alarms;
+    judge(learned_.makeJudge(), events, [&](const Verdict& verdict) {
+      if (const auto ended = alarms.add(verdict, kWindow, vocabulary_)) {
+        told.push_back(*ended);
+      }
+    });
+    if (const auto ended = alarms.end(events.back().stamp)) {
+      told.push_back(*ended);
+    }
+    return told;
+  }
+  /// The only alarm of a recording, after a suspicion.
+  Alarm alarmIn(const Events& events) const {
+    std::vector<Alarm> told = toldOf(events);
+    told.erase(
+        std::remove_if(told.begin(), told.end(),
+                       [](const Alarm& each) { return each.level != Alarm::Level::kAlarm; }),
+        told.end());
+    EXPECT_EQ(told.size(), 1U);
+    return told.empty() ? Alarm() : told.front();
+  }
+
+  const std::vector<EventType> types_ = numberedTypes(kTypesOfRobot);
+  const core::Model learned_ = learnedFrom(types_, {robot(kHour), robot(2 * kHour)});
+  Vocabulary vocabulary_;
+};
+
+TEST_F(SlowerClockTest, WhoKeepsAnotherTimeIsNotToBlame) {
+  const std::vector<Alarm> told = toldOf(robot(kSecond, {1, 2.5, 2.5, 1}));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_EQ(told[0].level, Alarm::Level::kSuspicion);
+  EXPECT_EQ(told[0].kind, Kind::kSlowerClock);
+  EXPECT_EQ(told[0].culprit, "");
+  EXPECT_EQ(told[0].evidence, "clock");
+  EXPECT_EQ(told[0].reason,
+            "the simulation may run slower: 2 nodes send 2.5 times as often by its clock");
+}
+
+TEST_F(SlowerClockTest, InRealTimeItIsTheirs) {
+  const Alarm alarm = alarmIn(robot(kYears, {1, 2.5, 2.5, 1}));
+  EXPECT_EQ(alarm.kind, Kind::kFast);
+  EXPECT_EQ(alarm.culprit, "/c1");
+}
+
+TEST_F(SlowerClockTest, OtherFactorsAreNoClock) {
+  EXPECT_EQ(alarmIn(robot(kSecond, {1, 1.6, 4, 1})).kind, Kind::kFast);
+}
+
+TEST_F(SlowerClockTest, WhoAnswersDoesWhatItIsAsked) {
+  EXPECT_EQ(alarmIn(robot(kSecond, {1, 1, 1, 2.5})).culprit, "/c3");
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence
