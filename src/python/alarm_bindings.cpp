@@ -58,6 +58,9 @@ void bindAlarms(py::module& m) {
       .def_readonly("component", &core::Suspect::component,
                     "whose event type it is; empty: not known")
       .def_readonly("abnormal", &core::Suspect::abnormal, "it alone would be abnormal")
+      .def_readonly("topic", &core::Suspect::topic, "of its event type")
+      .def_readonly("value", &core::Suspect::value,
+                    "that its messages have: status.status=4; empty: none")
       .def_readonly("onset", &core::Suspect::onset,
                     "since when what is wrong with it has been so [ns]; 0: not known")
       .def_readonly("since", &core::Suspect::since,
@@ -91,6 +94,8 @@ void bindAlarms(py::module& m) {
                     "component; empty: there is none, or nobody stands out")
       .def_readonly("reason", &Alarm::reason,
                     "why the culprit is one, in words; without one, who is silent, or empty")
+      .def_property_readonly("is_told_once", &Alarm::isToldOnce,
+                             "whether it tells of what is new once, however long that lasts")
       .def_readonly("waiting", &Alarm::waiting,
                     "who waits for the culprit, who for them, and so on; empty: not known")
       .def_readonly("evidence", &Alarm::evidence,

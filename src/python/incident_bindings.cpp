@@ -18,28 +18,34 @@
 namespace self_awareness::python {
 namespace {
 
-/// A component, whether it alone would be abnormal, since when it was silent [ns], and whether it
-/// is a stranger.
-using NamedState = std::tuple<std::string, bool, std::optional<std::int64_t>, bool>;
+/// A component, whether it alone would be abnormal, since when it was silent [ns], what is wrong
+/// with it, and since when [ns].
+using NamedState =
+    std::tuple<std::string, bool, std::optional<std::int64_t>, std::string, std::int64_t>;
+
+core::Kind kindNamed(const std::string& name) {
+  const std::optional<core::Kind> kind = core::kindOf(name);
+  if (!kind) {
+    throw std::invalid_argument(name + " is no kind of an alarm");
+  }
+  return *kind;
+}
 
 core::Occurrence occurrenceOf(std::uint64_t id, bool is_alarm, std::int64_t begin,
                               std::int64_t end, const std::string& kind, std::string culprit,
                               std::vector<NamedState> named, std::vector<std::string> hosts) {
-  const std::optional<core::Kind> known = core::kindOf(kind);
-  if (!known) {
-    throw std::invalid_argument(kind + " is no kind of an alarm");
-  }
   core::Occurrence occurrence;
   occurrence.id = id;
   occurrence.level = is_alarm ? core::Alarm::Level::kAlarm : core::Alarm::Level::kSuspicion;
   occurrence.begin = begin;
   occurrence.end = end;
   occurrence.over = true;
-  occurrence.kind = *known;
+  occurrence.kind = kindNamed(kind);
   occurrence.culprit = std::move(culprit);
   occurrence.hosts = std::move(hosts);
-  for (auto& [component, abnormal, silent_since, stranger] : named) {
-    occurrence.named.push_back({std::move(component), abnormal, begin, silent_since, stranger});
+  for (auto& [component, abnormal, silent_since, wrong, onset] : named) {
+    occurrence.named.push_back(
+        {std::move(component), abnormal, begin, silent_since, kindNamed(wrong), onset});
   }
   return occurrence;
 }

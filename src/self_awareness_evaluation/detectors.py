@@ -184,7 +184,7 @@ def incidents_of(found: Iterable[Alarm], graph: AbstractSet[Tuple[str, str, str]
     by_id = {each.id: each for each in sorted(found, key=lambda each: each.begin)}
     occurrences = [Occurrence(
         each.id, each.level == ALARM, each.begin, each.end, each.kind, each.culprit,
-        [(suspect.component, suspect.abnormal, None, suspect.reason.kind == 'stranger')
+        [(suspect.component, suspect.abnormal, None, suspect.reason.kind, suspect.onset)
          for suspect in (*each.suspects, *each.later)],
         [] if each.silent is None else each.silent.hosts) for each in by_id.values()]
     spans = {}

@@ -23,6 +23,7 @@ std::vector<Suspect> withComponents(std::vector<Suspect> suspects, const Vocabul
     if (suspect.id < vocabulary.size()) {
       const EventType& type = vocabulary.at(suspect.id);
       suspect.topic = type.scope;
+      suspect.value = valueOf(type);
       if (suspect.component.empty()) {
         suspect.component = componentOf(type.source, type.scope);
       }
@@ -75,13 +76,25 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
   }
 }
 
-/// Takes in on how many topics somebody is there who should not be, or by whose clock: that shows
-/// with time.
+/// Whether what is wrong with a suspect is told better now: on how many topics somebody is there
+/// who should not be, or by whose clock, shows with time; and who lost some messages in a row fell
+/// silent for that.
+bool isToldBetter(const Suspect& before, const Suspect& now) {
+  const bool grows = isShared(now.reason.kind) || !now.reason.topics.empty();
+  const bool comes_with_losses =
+      now.abnormal && now.reason.kind == Kind::kLossy && isAbsence(before.reason.kind);
+  return now.id == before.id &&
+         (comes_with_losses || (grows && now.reason.kind == before.reason.kind));
+}
+
 void growWith(const Verdict& verdict, Alarm& alarm) {
   for (Suspect& suspect : alarm.suspects) {
     for (const Suspect& now : verdict.suspects) {
-      if (now.id == suspect.id && now.reason.kind == suspect.reason.kind &&
-          (isShared(now.reason.kind) || !now.reason.topics.empty())) {
+      if (isToldBetter(suspect, now)) {
+        if (suspect.component == alarm.culprit && suspect.reason.kind == alarm.kind) {
+          alarm.kind = now.reason.kind;
+          alarm.reason = now.reason.words;
+        }
         suspect.reason = now.reason;
       }
     }

@@ -192,7 +192,7 @@ void Detector::close(const Window& window, std::int64_t end) {
                                       : unknown ? NameSuspects::kAlways
                                                 : NameSuspects::kIfUnusual);
   if (unknown) {
-    addEvidence(judgement, "unknown events");
+    addEvidence(judgement, kUnknownEvents);
   }
   if (unknown && parameters_.unknown == UnknownEvents::kError && judgement.threshold) {
     judgement.abnormal = true;

@@ -32,14 +32,16 @@ std::optional<std::int64_t> silentSince(const Suspect& suspect) {
 }
 
 bool atOnce(const Occurrence::Named& first, const Occurrence::Named& other, bool graph_is_known) {
-  if (first.stranger) {
-    return other.stranger;
+  if (first.silent_since || other.silent_since) {
+    return first.silent_since && other.silent_since &&
+           std::abs(*other.silent_since - *first.silent_since) <= Incidents::kAtOnce;
   }
-  if (!first.silent_since) {  // then, only the graph tells victims
-    return graph_is_known && other.abnormal;
+  if (first.kind == Kind::kStranger || other.kind != first.kind) {
+    return other.kind == first.kind;
   }
-  return other.silent_since &&
-         std::abs(*other.silent_since - *first.silent_since) <= Incidents::kAtOnce;
+  // Only the graph tells victims then.
+  return graph_is_known && other.abnormal &&
+         std::abs(other.onset - first.onset) <= Incidents::kJoined;
 }
 
 /// Who failed at once with the culprit, and does not need its messages.
@@ -179,7 +181,7 @@ Occurrence occurrenceOf(const Alarm& alarm) {
   for (const std::vector<Suspect>* suspects : {&alarm.suspects, &alarm.later}) {
     for (const Suspect& suspect : *suspects) {
       occurrence.named.push_back({suspect.component, suspect.abnormal, suspect.since,
-                                  silentSince(suspect), suspect.reason.kind == Kind::kStranger});
+                                  silentSince(suspect), suspect.reason.kind, suspect.onset});
     }
   }
   return occurrence;

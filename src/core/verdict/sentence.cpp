@@ -122,6 +122,9 @@ std::string shortly(const Reason& reason, bool is_silence, bool is_back) {
   if (reason.unit == unit::kScore) {
     return "came at unusual times";
   }
+  if (reason.kind == Kind::kStale && reason.value < 0) {
+    return "sends stamps of the future";
+  }
   const bool of_answers = !reason.after.empty() || (reason.of > 0 && reason.times == 0);
   return of_answers ? ofAnswers(reason.kind) : ofMessages(reason.kind);
 }
@@ -154,7 +157,7 @@ std::string sentence(const Alarm& alarm, const std::string& shared) {
   story.kind = alarm.kind;
   story.reason = alarm.kind == Kind::kBusyMachine && !shared.empty() ? shared : alarm.reason;
   story.begin = utc(alarm.begin);
-  story.end = alarm.over ? utc(alarm.end) : "";
+  story.end = alarm.over && !alarm.isToldOnce() ? utc(alarm.end) : "";
   if (alarm.silent) {
     story.hosts = alarm.silent->hosts;
     story.silent = alarm.silent->components.size();
@@ -177,7 +180,7 @@ std::string sentence(const Alarm& alarm, const std::string& shared) {
   reason.kind = alarm.kind;
   if (culprit != nullptr) {
     reason = culprit->reason;
-    story.topic = culprit->topic;
+    story.topic = culprit->topic + (culprit->value.empty() ? "" : " with " + culprit->value);
     story.begin = culprit->onset > 0 ? utc(culprit->onset) : story.begin;
   }
   const bool is_there = !reason.topics.empty() && reason.kind == Kind::kStranger;

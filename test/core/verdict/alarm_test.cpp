@@ -117,6 +117,21 @@ TEST_F(AlarmsTest, WhoIsNamedLaterChangesNeitherIdNorCulprit) {
   EXPECT_EQ(after.later[0].component, "/b");
 }
 
+TEST_F(AlarmsTest, WhoComesWithLossesFellSilentForThem) {
+  add(verdict(kAlarm, {missing(0), missing(1)}));
+  Suspect lossy = suspect(0, Kind::kLossy);
+  add(verdict(kAlarm, {lossy}));
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kSilent) << "within its limit, it says nothing";
+  lossy.abnormal = true;
+  lossy.reason.words = "5 of 16 missing";
+  add(verdict(kAlarm, {lossy}));
+  const Alarm alarm = *alarms_.standing();
+  EXPECT_EQ(alarm.culprit, "/a");
+  EXPECT_EQ(alarm.kind, Kind::kLossy);
+  EXPECT_EQ(alarm.reason, "5 of 16 missing");
+  EXPECT_EQ(alarm.suspects[1].reason.kind, Kind::kSilent);
+}
+
 TEST_F(AlarmsTest, WhoWaitsForTheCulpritIsKeptWhereMostDid) {
   Verdict next = verdict(kAlarm, {suspect(0, Kind::kSilent)});
   for (const std::string waiting : {"", "/b waits for /a", "/c waits for /b, /b for /a", ""}) {

@@ -111,10 +111,24 @@ TEST_F(IncidentsTest, OfANewModeAllWhoStoppedAreKept) {
 TEST_F(IncidentsTest, StrangersComeTogetherWithStrangersOnly) {
   graph_.connect("/player", "/scan", "/slam");
   Occurrence flood = alarm(10, 15, {"/new", "/newer", "/camera"});
-  flood.named[0].stranger = flood.named[1].stranger = true;
+  flood.named[0].kind = flood.named[1].kind = Kind::kStranger;
   add(flood);
   EXPECT_EQ(one().together, Names{"/newer"});
   EXPECT_EQ(one().others, Names{"/camera"});
+}
+
+TEST_F(IncidentsTest, WhatIsWrongWithOthersOrBeganLaterIsNotTheSame) {
+  graph_.connect("/player", "/scan", "/slam");
+  Occurrence fast = alarm(10, 60, {"/battery", "/wifi", "/imu", "/gps"});
+  for (Occurrence::Named& named : fast.named) {
+    named.kind = Kind::kFast;
+    named.onset = 9 * kSecond;
+  }
+  fast.named[2].kind = Kind::kStale;
+  fast.named[3].onset = 40 * kSecond;
+  add(fast);
+  EXPECT_EQ(one().together, Names{"/wifi"});
+  EXPECT_EQ(one().others, (Names{"/imu", "/gps"}));
 }
 
 TEST_F(IncidentsTest, SevenRestartsInTenMinutesAreOne) {

@@ -34,7 +34,8 @@ def test_a_flood_of_log_lines_is_found(of_its_own_robot) -> None:
     recording, = of_its_own_robot('21_log_flood', 'flood.bag')
     incident, = recording['incidents']
     assert (incident['cause'], incident['kind']) == ('/move_base', 'fast')
-    assert incident['headline'].startswith('/move_base (/rosout) sends too often from 50.0 s')
+    assert incident['headline'].startswith(
+        '/move_base (/rosout with level=4) sends too often from 50.0 s')
     alarm, = (each for each in recording['alarms'] if each['level'] == 'ERROR')
     assert alarm['begin_s'] < 55.0
 
@@ -61,7 +62,7 @@ def test_goals_that_never_failed_before_are_told(of_its_own_robot) -> None:
     assert [suspect['event_type'] for suspect in alarm['suspects']] == [
         '/navigator /navigator/result nav_demo/GoResult[status.status=4]']
     assert incident['headline'].startswith(
-        '/navigator sends /navigator/result with status.status=4, as never in training, from ')
+        '/navigator sends /navigator/result with status.status=4, as never in training, since 6')
 
 
 def test_what_was_always_latched_and_is_not_there_is_told(of_its_own_robot) -> None:

@@ -24,7 +24,8 @@ from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 def suspect(component: str, short: str = 'fell silent', silence: Optional[Silence] = None,
             kind: str = 'silent', **reason: Any) -> NamedSuspect:
-    of: Any = SimpleNamespace(reason=SimpleNamespace(kind=kind, after='', topics=[], **reason))
+    of: Any = SimpleNamespace(topic='/t', value='', onset=0, reason=SimpleNamespace(
+        kind=kind, after='', topics=[], **reason))
     return NamedSuspect(component, f'{component} /t x/Y', short, 'why', 0.0, True, silence, of)
 
 
@@ -32,7 +33,7 @@ def interval(start: float, end: float, suspects: Sequence[NamedSuspect] = (), le
              cleared: bool = True, kind: str = 'silent', busy: Optional[str] = None,
              silence: Optional[Silence] = None, reason: str = '') -> Interval:
     of: Any = SimpleNamespace(culprit=suspects[0].component if suspects else '', kind=kind,
-                              silent=None, reason=reason, waiting='')
+                              silent=None, reason=reason, waiting='', is_told_once=False)
     return Interval(of, level, start, end, '', cleared, None, '200 % of the limit', 'overdue',
                     busy, silence, list(suspects), [])
 

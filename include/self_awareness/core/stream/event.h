@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -26,6 +27,13 @@ inline bool operator!=(const EventType& a, const EventType& b) {
 inline bool operator<(const EventType& a, const EventType& b) {
   return std::tie(a.source, a.scope, a.type) < std::tie(b.source, b.scope, b.type);
 }
+
+/// The value that the type field of its messages has: "status.status=4"; empty: they have none.
+std::string valueOf(const EventType& type);
+
+/// An event type without the value of its type field, or what is told besides its messages; none:
+/// it says neither.
+std::optional<EventType> withoutValue(const EventType& type);
 
 /// Name of a component: its source, or its scope where the encoding leaves sources out.
 inline const std::string& componentOf(const std::string& source, const std::string& scope) {

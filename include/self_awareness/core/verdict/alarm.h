@@ -48,6 +48,8 @@ struct Alarm {
   std::vector<Suspect> suspects;
   std::vector<Suspect> later;  ///< of further components, each with its time (since)
 
+  /// Whether it tells of what is new once, however long that lasts.
+  bool isToldOnce() const { return evidence == kUnknownEvents; }
   /// The suspect that is the culprit; null: there is none.
   const Suspect* suspectToBlame() const;
 };

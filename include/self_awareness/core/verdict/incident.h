@@ -22,7 +22,8 @@ struct Occurrence {
     bool abnormal = false;                     ///< it alone would be abnormal
     std::int64_t since = 0;                    ///< when it was named [ns]
     std::optional<std::int64_t> silent_since;  ///< [ns]; none: it was not silent, or not known
-    bool stranger = false;                     ///< training never heard it
+    Kind kind = Kind::kSilent;                 ///< what is wrong with it
+    std::int64_t onset = 0;                    ///< since when [ns]; 0: not known
   };
 
   std::uint64_t id = 0;

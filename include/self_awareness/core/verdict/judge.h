@@ -18,6 +18,9 @@
 
 namespace self_awareness::core {
 
+/// What a window with event types that training never saw is suspicious for.
+constexpr char kUnknownEvents[] = "unknown events";
+
 /// What a judge says about one window.
 struct Judgement {
   std::optional<double> score;      ///< low is abnormal; none: such a window has no score

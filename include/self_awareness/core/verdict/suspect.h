@@ -130,6 +130,7 @@ struct Suspect {
   EventId id = 0;         ///< of the event type
   std::string component;  ///< whose event type it is; empty: not known, as of unknown events
   std::string topic;      ///< of the event type, once an alarm names it
+  std::string value;      ///< as valueOf() says, likewise
   /// It alone would be abnormal: its evidence is beyond its limit, or it was never seen in
   /// training. With the paper's detector, which knows no limit of a single event type, the latter
   /// only.

@@ -65,13 +65,6 @@ Reason newOf(const EventType& type, const std::string& what) {
 
 }  // namespace
 
-std::optional<EventType> withoutValue(const EventType& type) {
-  const std::size_t end = type.type.find('[');
-  return end == std::string::npos
-             ? std::nullopt
-             : std::optional(EventType{type.source, type.scope, type.type.substr(0, end)});
-}
-
 News::News(const Model& model, std::shared_ptr<const Vocabulary> heard)
     : heard_(std::move(heard)) {
   for (EventId id = 0; id < model.size(); ++id) {
@@ -103,11 +96,8 @@ std::optional<Reason> News::reasonOf(EventId id) const {
     return std::nullopt;
   }
   if (!heard_->tellsList(id)) {
-    const std::size_t value = any->type.size() + 1;
-    return valued_.count(*any) == 0
-               ? std::nullopt
-               : std::optional(
-                     newOf(type, "with " + type.type.substr(value, type.type.size() - value - 1)));
+    return valued_.count(*any) == 0 ? std::nullopt
+                                    : std::optional(newOf(type, "with " + valueOf(type)));
   }
   const Listed list = listedBy(type).value();
   const auto known = lists_.find({*any, list.field});

@@ -14,10 +14,6 @@
 
 namespace self_awareness::core::evidence {
 
-/// An event type without the value of its type field, or what is told besides its messages; none:
-/// it says neither.
-std::optional<EventType> withoutValue(const EventType& type);
-
 /// Knows what the senders of the training said: which values their type fields had, and what their
 /// messages listed. Another list is news where each list of the sender came in two recordings of
 /// the training: else it may have others still (Good, "The population frequencies of species and

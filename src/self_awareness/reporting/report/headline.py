@@ -42,10 +42,11 @@ def headline(main: Interval, together: Sequence[str], times: int) -> str:
     text = sentence(
         kind=main.of.kind if first is None else first.of.reason.kind,
         components=[] if first is None else [first.component, *together],
-        topic='' if first is None else first.event_type.split(' ')[-2],
+        topic='' if first is None else first.what,
         wrong='' if first is None else first.short, reason=_reason(main),
         is_silence=is_silence, begin=clock(begin) if begin > 0 else '',
-        end=clock(main.end) if main.cleared else '', goes_on='the end of the recording',
+        end=clock(main.end) if main.cleared and not main.of.is_told_once else '',
+        goes_on='' if main.of.is_told_once else 'the end of the recording',
         back=back, times=times, hosts=main.of.silent.hosts if main.of.silent is not None else [],
         silent=len(main.of.silent.components) if main.of.silent is not None else 0)
     if main.before_end is not None:
@@ -61,7 +62,7 @@ def of_another(suspect: NamedSuspect) -> str:
     back = '' if silence.back is None else f', and came back at {clock(silence.back)}'
     text = sentence(
         kind=suspect.of.reason.kind, components=[suspect.component],
-        topic=suspect.event_type.split(' ')[-2], wrong=suspect.short, reason='', is_silence=True,
+        topic=suspect.what, wrong=suspect.short, reason='', is_silence=True,
         begin=clock(silence.begin) if silence.begin > 0 else '', end='', goes_on='', back=back,
         times=1, hosts=[], silent=0)
     return f'{text[0].upper()}{text[1:]}.'

@@ -132,7 +132,7 @@ def _occurrence(number: int, interval: Interval) -> Occurrence:
         interval.of.kind, interval.of.culprit,
         [(each.component, each.abnormal,
           None if each.silence is None else nanoseconds(each.silence.begin),
-          each.of.reason.kind == 'stranger')
+          each.of.reason.kind, each.of.onset)
          for each in interval.named],
         [] if silent is None else silent.hosts)
 
@@ -140,9 +140,31 @@ def _occurrence(number: int, interval: Interval) -> Occurrence:
 def _incident(intervals: List[Interval], main: Interval, together: List[str],
               victims: List[str], others: List[str]) -> Incident:
     alarms = [each for each in intervals if each.level == main.level]
-    further = {each.component: of_another(each) for each in reversed(main.named)
-               if each.component in others and each.abnormal and each.silence is not None}
     return Incident('', intervals, main, together, victims, others,
-                    headline(main, together, len(alarms)), list(further.values())[::-1],
+                    headline(main, together, len(alarms)),
+                    _further(intervals, main, victims, others),
                     max((each.of.waiting for each in alarms
                          if each.of.culprit == main.of.culprit), key=len, default=''))
+
+
+def _further(intervals: Sequence[Interval], main: Interval, victims: Sequence[str],
+             others: Sequence[str]) -> List[str]:
+    """Return the sentences on those that the cause does not explain: others that are to blame for
+    an alarm or a suspicion of their own, or fell silent in its alarm, and victims that stayed
+    silent when it was back."""
+    further: Dict[str, str] = {}
+    is_back = main.first is not None and (main.first.silence is None
+                                          or main.first.silence.back is not None)
+    for each in main.named:
+        stays = each.silence is not None and each.silence.back is None and not main.cleared
+        if each.abnormal and (each.component in others and each.silence is not None
+                              or each.component in victims and stays and is_back):
+            further.setdefault(each.component, of_another(each))
+    by_culprit: Dict[str, List[Interval]] = {}
+    for interval in intervals:
+        if interval.of.culprit in others:
+            by_culprit.setdefault(interval.of.culprit, []).append(interval)
+    for culprit, of_culprit in by_culprit.items():
+        longest = max(of_culprit, key=lambda each: (each.level == ALARM, each.end - each.start))
+        further.setdefault(culprit, headline(longest, [], len(of_culprit)))
+    return list(further.values())

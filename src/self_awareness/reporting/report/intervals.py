@@ -62,6 +62,11 @@ class NamedSuspect:
     silence: Optional[Silence]
     of: Suspect
 
+    @property
+    def what(self) -> str:
+        """Its topic, with the value that its messages have."""
+        return f'{self.of.topic} with {self.of.value}' if self.of.value else self.of.topic
+
 
 @dataclass(frozen=True)
 class Interval:
@@ -171,6 +176,8 @@ def _silence_of(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Sile
                        suspect.since - int(looks_back * SECOND_NS), alarm.end)
     if is_silence and not reason.after:
         return silence
+    if reason.kind == 'lossy' and silence.back is not None:
+        return None  # some lost in a row are no silence
     usual = judged.by.trained.longest_gap(suspect.id) / SECOND_NS
     end = judged.seconds(judged.recording.end) if silence.back is None else silence.back
     return silence if usual > 0 and end - silence.begin > _CLEARLY_LONGER * usual else None
