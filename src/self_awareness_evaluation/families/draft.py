@@ -55,10 +55,13 @@ class Draft:
         return Robot(seed, tuple(self.outputs), conditions, self.activities,
                      frozenset(self.subscriptions), frozenset(far))
 
-    def add(self, name: str, topic: str, datatype: str, emission: Emission) -> int:
-        """Add an output of the component of that name, and return its index."""
+    def add(self, name: str, topic: str, datatype: str, emission: Emission,
+            other: str = '') -> int:
+        """Add an output of the component of that name, and return its index; a topic is its own
+        if it does not begin with a slash."""
         source = f'{self.namespace}/{name}'
-        self.outputs.append(Output(source, f'{source}/{topic}', datatype, emission))
+        self.outputs.append(Output(source, topic if topic.startswith('/') else f'{source}/{topic}',
+                                   datatype, emission, other))
         return len(self.outputs) - 1
 
     def add_timer(self, name: str, rate_hz: float, topic: str = 'data', activity: str = '') -> int:

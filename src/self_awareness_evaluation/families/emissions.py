@@ -10,7 +10,7 @@ from typing import Callable, Optional, Protocol
 import numpy as np
 
 from self_awareness_evaluation.families.conditions import in_order
-from self_awareness_evaluation.families.scene import Asked, Scene
+from self_awareness_evaluation.families.scene import LEAD_S, Asked, Scene
 
 _WANDER_PERIODS_S = (3600.0, 8000.0)
 _WANDER_STEP_S = 1.0
@@ -193,6 +193,18 @@ class Sporadic:
         number = rng.poisson((scene.end - scene.begin) / self.gap_s)
         times = np.sort(rng.uniform(scene.begin, scene.end, number))
         return times[scene.during(self.activity, times)]
+
+
+@dataclass(frozen=True)
+class Once:
+    """Sends once, some seconds after the recording begins: what is latched."""
+
+    activity: str = ''
+    trigger: Optional[int] = None
+
+    def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
+        """See Emission."""
+        return scene.begin + LEAD_S + scene.of_recording(f'once {index}').uniform(0.5, 3.0, 1)
 
 
 def stalled(times: np.ndarray, scene: Scene) -> np.ndarray:

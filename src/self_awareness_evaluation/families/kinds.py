@@ -10,10 +10,13 @@ from self_awareness_evaluation.families.conditions import Activity, Conditions
 from self_awareness_evaluation.families.draft import (FASTEST_CHAIN_HZ, MOST_OF_PERIOD, RATES_HZ,
                                                       Draft, Timing, add_task,
                                                       add_timers_and_chains)
-from self_awareness_evaluation.families.emissions import (Answer, Feedback, Sporadic, Timer,
-                                                          TwoRates)
-from self_awareness_evaluation.families.robot import CRASH, Fault, Output, Robot
+from self_awareness_evaluation.families.emissions import (Answer, Feedback, Once, Sporadic,
+                                                          Timer, TwoRates)
+from self_awareness_evaluation.families.robot import CRASH, LOG, WARNING, Fault, Output, Robot
 
+_TRANSFORMS = 'tf2_msgs/TFMessage'
+_DIAGNOSTICS = 'diagnostic_msgs/DiagnosticArray'
+_RESULT = 'move_base_msgs/MoveBaseActionResult[status.status='
 _HOLE_S = 6.0
 _HEAD_OR_TAIL_S = (6.0, 20.0)
 _CLOCKS_PPM = 50.0
@@ -256,6 +259,35 @@ def _with_clock(output: Output, own: np.random.Generator) -> Output:
             if isinstance(emission, Timer) else output)
 
 
+def _everyday(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rng = draft.rng
+    add_timers_and_chains(draft, 0)
+    draft.add('map_server', '/map', 'nav_msgs/OccupancyGrid[latched]', Once())
+    frames = [f'link{number}' for number in range(int(rng.integers(3, 12)))]
+    draft.add('state_publisher', '/tf', _TRANSFORMS, Timer(1.0 / float(rng.choice(RATES_HZ[4:]))))
+    _add_list(draft, 'state_publisher', '/tf', f'{_TRANSFORMS}[lists transforms.child_frame_id: ',
+              ', '.join(frames), ', '.join(frames[1:]))
+    for number in range(3):
+        name = f'device{number}'
+        draft.add_timer(name, float(rng.choice(RATES_HZ)))
+        draft.add(name, '/diagnostics', _DIAGNOSTICS, Timer(1.0))
+        _add_list(draft, name, '/diagnostics', f'{_DIAGNOSTICS}[lists status.level: ', '0', '0, 2')
+    draft.add_timer('navigator', 5.0, 'status')
+    draft.add('navigator', 'result', f'{_RESULT}3]', Sporadic(rng.uniform(5.0, 20.0)),
+              f'{_RESULT}4]')
+    for name in ('planner', 'navigator'):
+        draft.add_timer(name, 10.0, 'command')
+        for lines in ('rosgraph_msgs/Log[level=2]', WARNING):
+            draft.add(name, LOG, lines, Sporadic(rng.uniform(3.0, 20.0)))
+    return draft.robot(seed)
+
+
+def _add_list(draft: Draft, name: str, topic: str, field: str, usual: str, other: str) -> None:
+    """Add what messages of a component list: its values, and those of a fault."""
+    draft.add(name, topic, f'{field}{usual}]', Timer(1.0), f'{field}{other}]')
+
+
 def _hole(robot: Robot, number: int, seconds: float) -> Optional[Fault]:
     begin_s = (seconds - _HOLE_S) / 2.0
     return Fault(CRASH, robot.regular[0], begin_s, begin_s + _HOLE_S) if number == 0 else None
@@ -340,6 +372,8 @@ FAMILIES: Dict[str, Family] = {  # all families by name; more are added below
                       _servers),
     'lossy': Family('timers; 1 of 5000 messages is lost, however slowly they come',
                     _timers(conditions=Conditions(lost=2e-4, lost_however_slow=2e-4))),
+    'everyday': Family('timers and chains; transforms, a latched map, log lines, goals, '
+                       'diagnostics', _everyday),
     'one_make': Family('timers; robots of one make with a node of their own each: learned from '
                        'some, watching another', _of_one_make, of_make=_of_one_make),
 }

@@ -22,6 +22,11 @@ _MOST_SPREAD = 0.5  # the same of sizes that vary
 _HELD_S = (0.2, 60.0)  # mean time with the same content, of those that repeat themselves
 
 
+def has_header(datatype: str, index: int) -> bool:
+    """Return whether the messages of an output have a header, and so stamps and numbers."""
+    return bool(_of_robot(datatype, index).uniform() < _HEADERS)
+
+
 def attributes(datatype: str, scene: Scene, index: int, times: np.ndarray,
                numbers: np.ndarray, on_the_way_s: np.ndarray) -> np.ndarray:
     """Return the attributes of messages as they are heard (pack_attributes).
@@ -34,9 +39,9 @@ def attributes(datatype: str, scene: Scene, index: int, times: np.ndarray,
         numbers: of the messages, as they were sent.
         on_the_way_s: how long the messages took [s].
     """
-    of_robot = np.random.default_rng((zlib.crc32(datatype.encode()), index))
+    of_robot = _of_robot(datatype, index)
     rng = scene.of_recording(f'attributes {index}')
-    has_header, varies, repeats = of_robot.uniform(size=3) < (_HEADERS, _VARYING, _REPEATING)
+    with_header, varies, repeats = of_robot.uniform(size=3) < (_HEADERS, _VARYING, _REPEATING)
     age_s = np.exp(of_robot.uniform(*np.log(_PROCESSED_S)))
     size = np.exp(of_robot.uniform(*np.log(_BYTES)))
     held_s = np.exp(of_robot.uniform(*np.log(_HELD_S)))
@@ -49,7 +54,11 @@ def attributes(datatype: str, scene: Scene, index: int, times: np.ndarray,
     gaps = np.diff(times, prepend=times[:1])
     same = (rng.uniform(size=count) < np.exp(-gaps / held_s)) & (repeats & ~varies)
     same[:1] = False
-    if not has_header:
+    if not with_header:
         ages = np.full(count, np.nan)
         steps = np.full(count, -1)
     return pack_attributes(ages, sizes.astype(np.uint64), steps, same)
+
+
+def _of_robot(datatype: str, index: int) -> np.random.Generator:
+    return np.random.default_rng((zlib.crc32(datatype.encode()), index))

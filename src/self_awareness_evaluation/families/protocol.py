@@ -2,15 +2,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Callable, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families.kinds import FAMILIES
-from self_awareness_evaluation.families.robot import (AFTER_CRASH, CRASH, HALF_RATE, LATE,
-                                                      LONGEST_START_S, MISSES, RESTART, SILENT,
-                                                      SLOWER, STARVED, STOP, Fault, Robot)
+from self_awareness_evaluation.families.robot import (AFTER_CRASH, CRASH, FLOOD, HALF_RATE, LATE,
+                                                      LONGEST_START_S, LOSSES, MISSES, OLD, OTHER,
+                                                      RESTART, SILENT, SLOWER, STARVED, STOP,
+                                                      WARNING, Fault, Output, Robot)
 from self_awareness_evaluation.records import FaultRecord, Learning
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
@@ -20,8 +21,11 @@ DEATH = 'death'
 SELDOM = 'seldom'
 """The crash of a component that speaks when something happens, and answers to nobody."""
 
+NEVER = 'absent'
+"""What is latched at every start does not come."""
+
 KINDS = (CRASH, HALF_RATE, LATE, DEATH, MISSES, STARVED, SILENT, SELDOM, RESTART, *AFTER_CRASH,
-         SLOWER)
+         SLOWER, OLD, LOSSES, OTHER, FLOOD, NEVER)
 """Kinds of faults as they are told apart in the results."""
 
 WATCHED_S = 1800.0
@@ -38,6 +42,9 @@ RESTARTS_IN_S, AFTER_RESTART_S = 10.0, 180.0
 
 _ONSET_S = 60.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
+
+_ONE_IN = 3  # components has old stamps, or loses messages
+_LOSES_S = 20.0
 
 _FOLLOWS_S = 1.0  # so long after the first message is missing, something else follows a crash
 _STOP_TOGETHER = 3
@@ -139,7 +146,11 @@ class Records:
                DEATH: [source for source in answering if source not in regular],
                MISSES: [source for source in regular if source in answering],
                STARVED: [''], SILENT: [''], SELDOM: self.robot.seldom, RESTART: regular,
-               SLOWER: regular,
+               SLOWER: regular, OLD: self.robot.numbered[::_ONE_IN],
+               LOSSES: self.robot.numbered[1::_ONE_IN],
+               OTHER: _sources(self.robot, lambda output: bool(output.other)),
+               FLOOD: _sources(self.robot, lambda output: output.datatype == WARNING),
+               NEVER: self.robot.latching,
                **{kind: regular[first::len(AFTER_CRASH)]
                   for first, kind in enumerate(AFTER_CRASH)}}
         number = 0
@@ -158,8 +169,10 @@ class Records:
         spread = np.random.default_rng((self.robot.seed, number)).uniform(0.0, _ONSET_SPREAD_S)
         onset_s = _ONSET_S + float(spread)
         seconds = onset_s + after_s
-        fault = Fault(CRASH if kind in (DEATH, SELDOM) else kind, source, onset_s,
-                      onset_s + RESTARTS_IN_S if kind == RESTART else LONGEST_START_S)
+        onset_s = 0.0 if kind == NEVER else onset_s
+        lasts_s = {RESTART: RESTARTS_IN_S, LOSSES: _LOSES_S}.get(kind, LONGEST_START_S)
+        fault = Fault(CRASH if kind in (DEATH, SELDOM, NEVER) else kind, source, onset_s,
+                      onset_s + lasts_s)
         same_start = self._family.watched_start
         if kind in (DEATH, *AFTER_CRASH):
             healthy = self._recorded(_FAULTS, number, seconds, same_start)
@@ -176,7 +189,7 @@ class Records:
         onset = (int(missing[0]) if kind == DEATH
                  else recording.end - nanoseconds(seconds) + nanoseconds(onset_s))
         yield FaultRecord(kind, (source,) if source else (), recording, onset,
-                          onset + nanoseconds(RESTARTS_IN_S) if kind == RESTART else None,
+                          None if lasts_s == LONGEST_START_S else onset + nanoseconds(lasts_s),
                           self._involved(kind, source))
 
     def _involved(self, kind: str, source: str) -> Optional[FrozenSet[str]]:
@@ -193,6 +206,8 @@ class Records:
             return _PAUSES * float(np.max(np.diff(stamps), initial=0)) / SECOND_NS
         if kind == RESTART:
             return RESTARTS_IN_S + AFTER_RESTART_S
+        if kind in (LOSSES, NEVER):
+            return 2.0 * AFTER_ONSET_S
         return after_death_s if kind == DEATH else AFTER_ONSET_S
 
     def _recorded(self, section: _Section, number: int, seconds: float, one_start: bool,
@@ -218,6 +233,11 @@ def _stamps(recording: WindowedEvents, source: str) -> np.ndarray:
     """Return when a component sends [ns]."""
     ours = np.array([known.source == source for known in recording.event_types])
     return recording.stamps[ours[recording.ids]]
+
+
+def _sources(robot: Robot, has: Callable[[Output], bool]) -> List[str]:
+    """Return the components with such an output."""
+    return list(dict.fromkeys(output.source for output in robot.outputs if has(output)))
 
 
 def _spread(number: int, most: Optional[int]) -> Set[int]:

@@ -10,7 +10,8 @@ from self_awareness import EventType, Waiting
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families import messages
 from self_awareness_evaluation.families.conditions import Activity, Conditions, in_order
-from self_awareness_evaluation.families.emissions import Emission, Feedback, Sporadic, stalled
+from self_awareness_evaluation.families.emissions import (Emission, Feedback, Once,
+                                                          Sporadic, stalled)
 from self_awareness_evaluation.families.scene import Scene
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
@@ -26,12 +27,22 @@ AFTER_CRASH = (STALL, LOAD, STOP)
 SLOWER = '0.7 of the rate'
 """A fault of one component that no gap alone shows."""
 
+OLD, LOSSES, OTHER, FLOOD = 'old stamps', 'loses 30 %', 'new value', 'flood of log lines'
+"""The kinds of faults of one component that what it says shows."""
+
 STARVED, SILENT = 'starved CPU', 'everything silent'
 """The kinds of faults of the whole robot."""
 
 SLOWER_RATE = 0.7
 
 LATE_S = 0.06
+
+LOG, WARNING = '/rosout', 'rosgraph_msgs/Log[level=4]'
+"""Topic and datatype of log lines that a component writes without end with FLOOD."""
+
+_OLD_S = 3.0  # of stamps
+_LOST = 0.3
+_FLOOD_HZ = 100.0
 
 _MISSED_S = 1.0  # what asks in this time is not answered
 _BETWEEN_MISSES_S = 5.0  # mean time until it happens again
@@ -59,8 +70,9 @@ class Fault:
             other phases. HALF_RATE: it leaves out every second message. SLOWER: its timers are
             slower, and it leaves out some answers. LATE: its answers to others come LATE_S later.
             MISSES: it answers nothing for a second, now and then. What answers to it suffers as
-            it would. STARVED: all messages wait, longer and longer within 20 s. SILENT: nobody
-            sends.
+            it would. OLD: its stamps are 3 s older. LOSSES: 30 % of its messages never arrive.
+            OTHER: its outputs say their other value. FLOOD: it logs 100 warnings a second.
+            STARVED: all messages wait, longer and longer within 20 s. SILENT: nobody sends.
         source: the component; empty: the robot.
         onset_s: from the beginning of the recording [s].
         relief_s: from there on all is well again [s].
@@ -85,12 +97,14 @@ class Output:
         topic: that it publishes.
         datatype: of the messages.
         emission: when it sends; answers are to outputs before it.
+        other: datatype with another value, that it has with OTHER; empty: it has none.
     """
 
     source: str
     topic: str
     datatype: str
     emission: Emission
+    other: str = ''
 
 
 @dataclass(frozen=True)
@@ -136,7 +150,7 @@ class Robot:
         regular = [False] * len(self.outputs)
         for index, output in enumerate(self.outputs):
             emission = output.emission
-            regular[index] = (not isinstance(emission, (Feedback, Sporadic))
+            regular[index] = (not isinstance(emission, (Feedback, Sporadic, Once))
                               and self._goes_on(emission.activity)
                               and (emission.trigger is None or regular[emission.trigger]))
         return _distinct(output.source for output, is_so in zip(self.outputs, regular) if is_so)
@@ -144,9 +158,25 @@ class Robot:
     @property
     def seldom(self) -> List[str]:
         """The components that send when something happens, and answer to nobody."""
-        others = {*self.regular, *self.answering}
+        others = {*self.regular, *self.answering, *self.latching}
         return [source for source in _distinct(output.source for output in self.outputs)
                 if source not in others]
+
+    @property
+    def latching(self) -> List[str]:
+        """The components that say something when they start, and nothing else."""
+        goes_on = {output.source for output in self.outputs
+                   if not isinstance(output.emission, Once)}
+        return [source for source in _distinct(output.source for output in self.outputs)
+                if source not in goes_on]
+
+    @property
+    def numbered(self) -> List[str]:
+        """The regular components whose messages have headers, each on its first topic."""
+        first: Dict[str, bool] = {}
+        for index, output in enumerate(self.outputs):
+            first.setdefault(output.source, messages.has_header(output.datatype, index))
+        return [source for source in self.regular if first[source]]
 
     @property
     def answering(self) -> List[str]:
@@ -201,20 +231,22 @@ class Robot:
             scene.stall(begin_s + fault.follows_s, _LASTS_S)
         for index in range(len(self.outputs)):
             scene.published.append(self._published(scene, index, fault, begin_s))
-        recorded = [self._heard(scene, index, _RECORDER) for index in range(len(self.outputs))]
+        recorded = [self._recorded(scene, index, fault, begin_s)
+                    for index in range(len(self.outputs))]
         heard = [times for times, _ in recorded]
-        attributes = [messages.attributes(output.datatype, scene, index, times, numbers,
-                                          times - scene.published[index][numbers])
-                      for index, (output, (times, numbers))
-                      in enumerate(zip(self.outputs, recorded))]
+        attributes = [messages.attributes(
+            output.datatype, scene, index, times, numbers, times - scene.published[index][numbers]
+            + _OLD_S * _is_hit(fault, OLD, output, times, begin_s))
+            for index, (output, (times, numbers)) in enumerate(zip(self.outputs, recorded))]
         origin = (_FIRST_START_S + start_seed * _BETWEEN_STARTS_S) * SECOND_NS
-        return replace(self._merged(heard, attributes, begin_s, begin_s + seconds, origin),
+        return replace(self._merged(heard, attributes, fault, begin_s, begin_s + seconds, origin),
                        waiting=_waiting(scene, begin_s, origin))
 
     def _check(self, fault: Fault) -> None:
         of_robot = fault.kind in (STARVED, SILENT)
         if not of_robot and fault.kind not in (
-                CRASH, HALF_RATE, SLOWER, LATE, MISSES, RESTART, *AFTER_CRASH):
+                CRASH, HALF_RATE, SLOWER, LATE, MISSES, RESTART, OLD, LOSSES, OTHER, FLOOD,
+                *AFTER_CRASH):
             raise ValueError(f'{fault.kind}: no such kind of fault')
         if fault.source not in ({''} if of_robot else {output.source for output in self.outputs}):
             raise ValueError(f'{fault.source}: no such component')
@@ -252,6 +284,13 @@ class Robot:
         if fault.kind == STARVED:
             grown = np.clip((times - begin_s - fault.onset_s) / _GROWS_S, 0.0, 1.0) * hit
             return _waited(times, grown, scene, index)
+        if fault.kind in (OLD, LOSSES, OTHER):
+            return times
+        if fault.kind == FLOOD:
+            if output.datatype != WARNING:
+                return times
+            lines = np.arange(begin_s + fault.onset_s, scene.end, 1.0 / _FLOOD_HZ)
+            return np.sort(np.concatenate([times, lines]))
         if fault.kind == MISSES:
             if not self._answers_others(output):
                 return times
@@ -267,6 +306,14 @@ class Robot:
             return times[~hit | (np.diff(np.floor(np.arange(-1, len(times)) * left)) > 0)]
         return times  # it answers to another output of the component, whose rate is halved
 
+    def _recorded(self, scene: Scene, index: int, fault: Optional[Fault],
+                  begin_s: float) -> Tuple[np.ndarray, np.ndarray]:
+        """Return when the recorder hears an output, and the numbers of its messages."""
+        times, numbers = self._heard(scene, index, _RECORDER)
+        lost = _is_hit(fault, LOSSES, self.outputs[index], times, begin_s)
+        lost &= scene.of_recording(f'losses {index}').uniform(size=len(times)) < _LOST
+        return times[~lost], numbers[~lost]
+
     def _heard(self, scene: Scene, index: int, listener: str) -> Tuple[np.ndarray, np.ndarray]:
         """Return when the messages of an output reach a component, or the recorder, and their
         numbers."""
@@ -278,10 +325,19 @@ class Robot:
         received = self.conditions.received(arrived, scene.of_recording(f'lost {way}'))
         return arrived[received], np.flatnonzero(received)
 
-    def _merged(self, recorded: List[np.ndarray], attributes: List[np.ndarray], begin: float,
-                end: float, origin: int) -> WindowedEvents:
+    def _merged(self, recorded: List[np.ndarray], attributes: List[np.ndarray],
+                fault: Optional[Fault], begin: float, end: float, origin: int) -> WindowedEvents:
         kept = [(times >= begin) & (times < end) for times in recorded]
         inside = [times[those] for times, those in zip(recorded, kept)]
+        outputs = list(self.outputs)
+        attributes = [each[those] for each, those in zip(attributes, kept)]
+        for index, output in enumerate(self.outputs):
+            says = _is_hit(fault, OTHER, output, inside[index], begin)
+            if output.other and says.any():
+                outputs.append(replace(output, datatype=output.other))
+                for parts in (inside, attributes):
+                    parts.append(parts[index][says])
+                    parts[index] = parts[index][~says]
         stamps = origin + (np.concatenate(inside) * SECOND_NS).astype(np.int64)
         if not len(stamps):
             raise ValueError(f'nothing happens in the {end - begin:g} s of the recording')
@@ -291,12 +347,19 @@ class Robot:
         ids = np.zeros(len(inside), dtype=np.uint32)
         ids[present] = np.arange(len(present))
         order = np.argsort(stamps, kind='stable')
-        outputs = [self.outputs[index] for index in present]
         return WindowedEvents(
-            [EventType(output.source, output.topic, output.datatype) for output in outputs],
+            [EventType(outputs[index].source, outputs[index].topic, outputs[index].datatype)
+             for index in present],
             stamps[order], np.repeat(ids, [len(times) for times in inside])[order],
-            origin + nanoseconds(end), attributes=np.concatenate(
-                [each[those] for each, those in zip(attributes, kept)])[order])
+            origin + nanoseconds(end), attributes=np.concatenate(attributes)[order])
+
+
+def _is_hit(fault: Optional[Fault], kind: str, output: Output, times: np.ndarray,
+            begin_s: float) -> np.ndarray:
+    """Return which times [s] of an output a fault of a kind concerns."""
+    if fault is None or (fault.kind, fault.source) != (kind, output.source):
+        return np.zeros(len(times), dtype=bool)
+    return (times >= begin_s + fault.onset_s) & (times < begin_s + fault.relief_s)
 
 
 def _missed(times: np.ndarray, scene: Scene, fault: Fault) -> np.ndarray:

@@ -1,13 +1,14 @@
 """What the pages say of the families of robots."""
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Dict, List, Sequence
 
 from self_awareness_evaluation.families.kinds import FAMILIES
-from self_awareness_evaluation.families.protocol import DEATH, KINDS, SELDOM
-from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LOAD, MISSES,
-                                                      RESTART, SILENT, SLOWER, STALL, STARVED,
-                                                      STOP)
+from self_awareness_evaluation.families.protocol import DEATH, KINDS, NEVER, SELDOM
+from self_awareness_evaluation.families.robot import (CRASH, FLOOD, HALF_RATE, LATE, LOAD, LOSSES,
+                                                      MISSES, OLD, OTHER, RESTART, SILENT, SLOWER,
+                                                      STALL, STARVED, STOP)
 from self_awareness_evaluation.figures import WITHIN_S, Found, Quiet, grouped, normal, of_fault
 from self_awareness_evaluation.robots import family_of
 from self_awareness_evaluation.rows import Row
@@ -27,8 +28,12 @@ TITLES: Dict[str, str] = {
     MISSES: 'inputs missed now and then',
     STARVED: 'starved CPU', SILENT: 'everything silent', RESTART: 'restarts',
     STALL: 'a stall follows a crash', LOAD: 'load follows a crash',
-    STOP: 'others stop after a crash'}
+    STOP: 'others stop after a crash', OLD: 'stamps are 3 s older',
+    LOSSES: '30 % of the messages lost', FLOOD: 'log lines without end',
+    OTHER: 'no transform, failed goals, an error (WARN)', NEVER: 'no latched message (WARN)'}
 """Kinds of faults as tables call them."""
+
+_SUSPICIONS = (OTHER, NEVER)  # that are no alarms
 
 _MOST_SOURCES = 2
 
@@ -61,7 +66,7 @@ def _results(by_learning: Dict[str, List[Row]]) -> List[str]:
     body = [['false alarms an hour (95 %)',
              *(rate(Quiet.of(normal(rows))) for rows in by_learning.values()), NONE]]
     for kind in KINDS:
-        found = [Found.of(of_fault(rows, kind)) for rows in by_learning.values()]
+        found = [_of_kind(rows, kind) for rows in by_learning.values()]
         if found[0].records:
             body.append([TITLES[kind], *(
                 f'{percent(each.share())} ({interval(each)}), {seconds(each.median_s)}'
@@ -75,7 +80,7 @@ def _results(by_learning: Dict[str, List[Row]]) -> List[str]:
 
 def _of_families(families: Sequence[str], by_learning: Dict[str, List[Row]]) -> List[str]:
     first, last = next(iter(by_learning)), list(by_learning)[-1]
-    kinds = [kind for kind in KINDS if kind not in (CRASH, RESTART)]
+    kinds = [kind for kind in KINDS if kind not in (CRASH, RESTART, FLOOD, *_SUSPICIONS)]
     head = ['family', *(f'false alarms/h, {started(each)}' for each in by_learning),
             'alarm stands', 'WARN/h', f'crashes, within {_within()} s',
             *(f'{TITLES[kind]}, {started(last)}' if kind == LATE else TITLES[kind]
@@ -116,6 +121,12 @@ def _pooled(rows: Sequence[Row]) -> List[str]:
                   'alarms after a restart'], body)
 
 
+def _of_kind(rows: Sequence[Row], kind: str) -> Found:
+    """Return how a kind was found; of what is no alarm, by its suspicion."""
+    found = Found.of(of_fault(rows, kind))
+    return replace(found, latencies_s=found.noticed_s) if kind in _SUSPICIONS else found
+
+
 def _family(row: Row) -> str:
     return family_of(row.subject.robot)
 
@@ -130,7 +141,7 @@ def _crashes(rows: Sequence[Row]) -> str:
 
 
 def _found(rows: Sequence[Row], kind: str) -> str:
-    found = Found.of(of_fault(rows, kind))
+    found = _of_kind(rows, kind)
     if not found.records:
         return NONE
     return f'{100.0 * found.share():.0f} %, {seconds(found.median_s)}{_blame(found)}'

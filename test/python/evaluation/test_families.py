@@ -10,11 +10,13 @@ from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.conditions import Conditions
 from self_awareness_evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
 from self_awareness_evaluation.families.kinds import DEFAULT, draw
-from self_awareness_evaluation.families.protocol import DEATH, RESTARTS_IN_S, SELDOM, Records
-from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LOAD, MISSES,
-                                                      RESTART, SILENT, SLOWER, STALL, STARVED,
-                                                      STOP, Fault, Output, Robot)
-from self_awareness_evaluation.records import Learning
+from self_awareness_evaluation.families.protocol import (DEATH, NEVER, RESTARTS_IN_S, SELDOM,
+                                                         Records)
+from self_awareness_evaluation.families.robot import (CRASH, FLOOD, HALF_RATE, LATE, LOAD, LOSSES,
+                                                      MISSES, OLD, OTHER, RESTART, SILENT, SLOWER,
+                                                      STALL, STARVED, STOP, WARNING, Fault,
+                                                      Output, Robot)
+from self_awareness_evaluation.records import FaultRecord, Learning
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 POINTS = 'sensor_msgs/PointCloud2'
@@ -274,6 +276,63 @@ def test_who_is_started_again_is_watched_for_long() -> None:
         assert not ((times > fault.onset) & (times < fault.back)).any()
         assert (times > fault.back).any()
         assert fault.recording.end - fault.back == 180 * SECOND_NS
+
+
+def everyday(kind: str, source: str = '') -> FaultRecord:
+    """Return the first record of a kind of what people look at first, of a component if one is
+    asked for."""
+    return next(fault for fault in Records('everyday', 1).faults((kind,))
+                if not source or fault.source == source)
+
+
+@pytest.mark.parametrize('source, usual, other', [
+    ('/state_publisher', 'link0, ', ''), ('/navigator', 'status=3', 'status=4'),
+    ('/device0', 'level: 0', 'level: 0, 2')])
+def test_another_value_comes_in_place_of_the_usual_one(source: str, usual: str,
+                                                       other: str) -> None:
+    fault = everyday(OTHER, source)
+    kinds = fault.recording.event_types
+    before, after = ({kinds[id_].type for id_ in fault.recording.ids[those]
+                      if kinds[id_].source == source and '[' in kinds[id_].type
+                      and 'Log' not in kinds[id_].type}
+                     for those in (fault.recording.stamps < fault.onset,
+                                   fault.recording.stamps >= fault.onset))
+    assert len(before) == len(after) == 1 and before != after
+    assert usual in before.pop() and other in after.pop()
+
+
+def test_who_floods_the_log_writes_a_hundred_warnings_a_second() -> None:
+    fault = everyday(FLOOD)
+    kinds = fault.recording.event_types
+    warnings = fault.recording.stamps[np.array(
+        [(kind.source, kind.type) == (fault.source, WARNING) for kind in kinds]
+    )[fault.recording.ids]]
+    assert np.sum(warnings < fault.onset) < 30
+    assert np.sum(warnings >= fault.onset) == pytest.approx(6000, abs=60)
+
+
+def test_what_is_latched_comes_at_every_start_but_that_with_the_fault() -> None:
+    records = Records('everyday', 1)
+    assert records.robot.latching == ['/map_server'] and '/map_server' not in records.robot.seldom
+    for recording in records.training(Learning(2, 60.0, 1, 60.0)):
+        assert len(sent(recording, '/map_server')) == 1
+    absent = everyday(NEVER)
+    assert not len(sent(absent.recording, absent.source))
+    assert absent.onset <= absent.recording.stamps[0] < absent.onset + SECOND_NS
+
+
+def test_old_stamps_and_losses_are_those_of_one_component_after_the_onset() -> None:
+    robot = draw('everyday', 1)
+    source = robot.numbered[0]
+    normal, old, lossy = (robot.start(1, 60.0, fault) for fault in (
+        None, Fault(OLD, source, 30.0), Fault(LOSSES, source, 30.0)))
+    assert same(normal, old)
+    ours = np.isin(normal.ids, [index for index, kind in enumerate(normal.event_types)
+                                if kind.source == source])
+    after = ours & (normal.stamps >= normal.end - 30 * SECOND_NS)
+    assert np.array_equal(normal.attributes != old.attributes, after)
+    gone = ~np.isin(normal.stamps, lossy.stamps)
+    assert not gone[~after].any() and gone[after].mean() == pytest.approx(0.3, abs=0.1)
 
 
 def test_one_recording_to_train_on_has_a_hole() -> None:
