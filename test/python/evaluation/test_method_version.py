@@ -17,7 +17,8 @@ from self_awareness_evaluation.systems import Judged, SystemAlarm
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 KEPT = Path(__file__).resolve().parents[2] / 'data' / 'verdicts.json'
-ROBOTS = (('bursty', 3), ('driving_docked', 3), ('hole', 3), ('lossy', 3), ('stalled_loops', 3))
+ROBOTS = (('bursty', 3), ('driving_docked', 3), ('everyday', 3), ('hole', 3), ('lossy', 3),
+          ('stalled_loops', 3))
 LEARNING = Learning.of(2, 150.0, 150.0)
 
 

@@ -8,6 +8,7 @@
 #include "core/evidence/channel/owed.h"
 #include "core/evidence/channel/pace.h"
 #include "core/evidence/channel/pairs.h"
+#include "core/evidence/channel/share.h"
 #include "core/evidence/channel/silence.h"
 #include "core/evidence/channel/size.h"
 
@@ -24,7 +25,9 @@ std::vector<const Channel*> channelsOfTheMethod() {
   static const Lost lost;
   static const Size size;
   static const Frozen frozen;
-  return {&silence, &slower, &faster, &pairs, &owed, &company, &age, &lost, &size, &frozen};
+  static const Share share;
+  return {&silence, &slower, &faster, &pairs,  &owed, &company,
+          &age,     &lost,   &size,   &frozen, &share};
 }
 
 std::string channelName(const Track& track) {

@@ -9,8 +9,10 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// A source whose numbers do not count its messages, or that loses many by itself, has more.
+// A source whose numbers do not count its messages has more that neither count on nor leave some
+// out, or leaves more out.
 constexpr double kMostOthers = 0.01;
+constexpr double kMostLosses = 0.1;
 // Fewer numbers do not say whether messages are lost.
 constexpr double kFewestNumbers = 300;
 // Twice what training lost is as usual as once.
@@ -104,7 +106,9 @@ std::vector<Track> Lost::watch(const Choice& choice) const {
     const auto next =
         static_cast<double>(counts.steps[static_cast<std::size_t>(Attributes::Step::kNext)]);
     const auto numbered = static_cast<double>(counts.numbered());
-    return next >= kFewestNumbers && numbered - next <= kMostOthers * numbered;
+    const auto losses = static_cast<double>(counts.losses());
+    return next >= kFewestNumbers && losses <= kMostLosses * numbered &&
+           numbered - next - losses <= kMostOthers * numbered;
   });
 }
 

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/evidence/count/log_bins.h"
-#include "core/evidence/watch/arming.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
@@ -22,10 +21,10 @@ constexpr auto kMostBehind = static_cast<double>(kRateSpan);
 // Messages of one stamp took some time, too [s].
 constexpr double kLeastTime = 1e-3;
 // Other paces, in bins of a quarter of an octave: 0.7 of the rate or a half; and 1.4, 2 or more,
-// up to 64 times the rate. What is still slower is a silence again and again.
+// up to 4096 times the rate. What is still slower is a silence again and again.
 constexpr std::ptrdiff_t kSlightly = 2;
 constexpr std::ptrdiff_t kTwice = 4;
-constexpr std::ptrdiff_t kMostBins = 24;
+constexpr std::ptrdiff_t kMostBins = 48;
 // Who comes as often as usual since the sum began, and has other gaps, has no other pace.
 constexpr double kSameRate = 0.1;
 
@@ -144,26 +143,12 @@ class PacesState : public ChannelState {
     pace.last = arrival.stamp;
     ++pace.gaps;
     pace.sum = std::clamp(pace.sum + step, 0.0, pace.cap);
-    if (!pace.arming.armed() && counts) {
-      if (pace.arming.failed()) {
-        // As in training, gaps speak against another pace.
-        pace.arming.add(step + arming_.usual, arming_);
-        pace.sum = pace.arming.armed() ? 0 : pace.sum;
-      } else {
-        pace.arming.arm();  // the history of one event type has no phase that could be another one
-      }
-    }
   }
-  void disarm(EventId id) override {
-    if (number_of_[id] != kNone) {
-      paces_[number_of_[id]].sum = 0;
-      paces_[number_of_[id]].arming.disarm();
-    }
-  }
+  // The history of one event type has no phase that could be another one: its pace counts always.
+  void disarm(EventId id) override { forget(id); }
   void forget(EventId id) override {
     if (number_of_[id] != kNone) {
       paces_[number_of_[id]].sum = 0;
-      paces_[number_of_[id]].arming.forget();
     }
   }
   void restart() override;
@@ -171,13 +156,6 @@ class PacesState : public ChannelState {
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
   std::optional<std::int64_t> onset(std::size_t track) const override {
     return paces_[expected_.numberOf(track)].since;
-  }
-  void addDisarmed(std::vector<std::size_t>& tracks) const override {
-    for (std::size_t number = 0; number < paces_.size(); ++number) {
-      if (paces_[number].arming.failed() && !paces_[number].arming.armed()) {
-        tracks.push_back(expected_.tracks()[number]);
-      }
-    }
   }
   void explain(std::size_t track, const Heard& /*heard*/, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
@@ -194,7 +172,6 @@ class PacesState : public ChannelState {
     std::int64_t last = 0;   // end of the last one [ns]
     std::uint32_t gaps = 0;  // since then
     double behind = 0;       // what gaps were too long, of which none was as usual since [ns]
-    Arming arming;
 
     /// Whether a gap is short since its message waited, or the one before it did.
     bool catchesUp(double gap, double step, double mean_gap) {
@@ -207,8 +184,6 @@ class PacesState : public ChannelState {
 
   const ExpectedPaces& expected_;
   double most_of_limit_;
-  Arming::Numbers arming_;
-  bool has_limits_ = false;
   std::vector<std::uint32_t> number_of_;  // of the track of a type, by id
   std::vector<OfType> paces_;             // by number of the track
 };
@@ -258,7 +233,6 @@ void ExpectedPaces::describe(EventId id, std::uint32_t gaps, double time, Reason
 PacesState::PacesState(const ExpectedPaces& expected)
     : expected_(expected),
       most_of_limit_(expected.model().tuning().most_of_limit),
-      arming_(expected.model().tuning()),
       number_of_(expected.model().size(), kNone),
       paces_(expected.tracks().size()) {
   for (std::uint32_t number = 0; number < paces_.size(); ++number) {
@@ -270,12 +244,10 @@ void PacesState::restart() {
   for (OfType& pace : paces_) {
     pace.sum = 0;
     pace.behind = 0;
-    pace.arming = {};
   }
 }
 
 void PacesState::capAt(const std::vector<double>& limits) {
-  has_limits_ = true;
   for (std::size_t number = 0; number < paces_.size(); ++number) {
     const double limit = limits[expected_.tracks()[number]];
     if (limit > 0) {  // never so where it is NaN
@@ -284,16 +256,12 @@ void PacesState::capAt(const std::vector<double>& limits) {
   }
 }
 
-void PacesState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
+void PacesState::closeWindow(const Heard& /*heard*/, std::vector<double>& evidence) {
   for (std::size_t number = 0; number < paces_.size(); ++number) {
-    OfType& pace = paces_[number];
-    if (has_limits_ && pace.arming.fails(pace.sum * most_of_limit_ > pace.cap, pace.sum <= 0,
-                                         heard.windowEnd(), arming_)) {
-      pace.sum = 0;
-    }
+    const OfType& pace = paces_[number];
     const auto time = static_cast<double>(pace.last - pace.since);
-    const bool counts = pace.arming.armed() && expected_.isOtherRate(number, pace.gaps, time);
-    evidence[expected_.tracks()[number]] = counts ? pace.sum : 0;
+    const bool is_other = expected_.isOtherRate(number, pace.gaps, time);
+    evidence[expected_.tracks()[number]] = is_other ? pace.sum : 0;
   }
 }
 

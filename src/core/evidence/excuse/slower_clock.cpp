@@ -71,6 +71,9 @@ SlowerClock::ByComponent SlowerClock::faster(const std::vector<Excess>& excesses
       suspect.component = model_->components()[excess.component];
       suspect.onset = excess.onset;
       scorer.explain(excess.track, events, suspect);
+      if (suspect.reason.unit != unit::kHertz) {
+        continue;
+      }
       factors.push_back(factorOf(suspect));
       faster.emplace(excess.component, std::move(suspect));
     }

@@ -1,0 +1,210 @@
+#include "core/evidence/channel/share.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "self_awareness/core/evidence/channel/model.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr double kHour = 3600e9;  // [ns]
+// Who may have a larger share is not rare.
+constexpr double kMostUsual = 0.5;
+// A share may be as large as so many standard deviations tell.
+constexpr double kDeviations = 3;
+// The sum that chance reaches so often in an hour at most.
+constexpr double kByChance = 0.001;
+constexpr double kMost = 200;  // of a sum whose limit is not known
+
+/// All values of a sender on a topic, and how many messages had one of them.
+struct Values {
+  std::vector<EventId> ids;
+  std::uint64_t messages = 0;
+};
+
+std::vector<Values> valuesIn(const Statistics& counts) {
+  std::map<EventType, Values> by_type;
+  for (EventId id = 0; id < counts.size(); ++id) {
+    const EventType& type = counts.vocabulary().at(id);
+    if (!valueOf(type).empty() && !counts.vocabulary().tellsMode(id)) {
+      Values& values = by_type[withoutValue(type).value()];
+      values.ids.push_back(id);
+      values.messages += counts.type(id).events;
+    }
+  }
+  std::vector<Values> all;
+  for (auto& [type, values] : by_type) {
+    all.push_back(std::move(values));
+  }
+  return all;
+}
+
+/// The largest share that is likely (Wilson, "Probable inference", 1927); 1: there is no message.
+double shareOf(const Statistics& counts, EventId id, const Values& values) {
+  const auto all = static_cast<double>(values.messages);
+  if (all == 0) {
+    return 1;
+  }
+  const double seen = static_cast<double>(counts.type(id).events) / all;
+  const double spread = kDeviations * kDeviations / all;
+  return (seen + spread / 2 +
+          kDeviations * std::sqrt(seen * (1 - seen) / all + spread / (4 * all))) /
+         (1 + spread);
+}
+
+class ExpectedShares : public Expectation {
+ public:
+  struct Usual {
+    double share = 0;  // that is likely, at most
+    double more = 0;   // what a message with the value adds to the sum [nat]
+    double less = 0;   // what another one takes from it [nat]
+    double least_limit = 0;
+  };
+
+  ExpectedShares(const Model& model, std::vector<std::size_t> tracks)
+      : Expectation(std::move(tracks)), model_(model), usual_(this->tracks().size()) {
+    numbers_of_.resize(model.size());
+    for (const Values& values : valuesIn(model.learned())) {
+      double an_hour = 0;
+      for (const EventId id : values.ids) {
+        const double gap = model.learned().type(id).gaps > 0 ? model.meanGap(id) : kHour;
+        an_hour += kHour / std::max(gap, 1.0);
+      }
+      for (std::size_t number = 0; number < this->tracks().size(); ++number) {
+        const EventId of_track = model.tracks()[this->tracks()[number]].to;
+        if (std::find(values.ids.begin(), values.ids.end(), of_track) == values.ids.end()) {
+          continue;
+        }
+        Usual& usual = usual_[number];
+        usual.share = shareOf(model.learned(), of_track, values);
+        const double often = (1 + usual.share) / 2;
+        usual.more = std::log(often / usual.share);
+        usual.less = std::log((1 - usual.share) / (1 - often));
+        usual.least_limit = std::max(std::log(an_hour / kByChance), model.tuning().least_pace);
+        for (const EventId id : values.ids) {
+          numbers_of_[id].push_back(number);
+        }
+      }
+    }
+  }
+
+  std::unique_ptr<ChannelState> start() const override;
+  double leastLimit(std::size_t track) const override {
+    return usual_[numberOf(track)].least_limit;
+  }
+  double limit(std::size_t /*track*/, double largest, double most) const override {
+    // Nobody knows how far a sum would have grown that ended at its cap.
+    return largest < kMost ? most : std::numeric_limits<double>::quiet_NaN();
+  }
+  const Model& model() const { return model_; }
+  const Usual& usual(std::size_t number) const { return usual_[number]; }
+  /// The tracks that a message of an event type says something of, by number.
+  const std::vector<std::size_t>& numbersOf(EventId id) const { return numbers_of_[id]; }
+
+ private:
+  const Model& model_;
+  std::vector<Usual> usual_;                          // by number of the track
+  std::vector<std::vector<std::size_t>> numbers_of_;  // by id
+};
+
+class SharesState : public ChannelState {
+ public:
+  explicit SharesState(const ExpectedShares& expected)
+      : expected_(expected), values_(expected.tracks().size()) {}
+
+  bool listens() const override { return !values_.empty(); }
+  void add(const Heard::Arrival& arrival, const Heard& /*heard*/) override {
+    for (const std::size_t number : expected_.numbersOf(arrival.id)) {
+      const ExpectedShares::Usual& usual = expected_.usual(number);
+      OfValue& value = values_[number];
+      const bool has_it = expected_.model().tracks()[expected_.tracks()[number]].to == arrival.id;
+      if (value.sum <= 0) {
+        value.since = arrival.stamp;
+        value.with = 0;
+        value.messages = 0;
+      }
+      value.with += has_it ? 1 : 0;
+      ++value.messages;
+      value.sum = std::clamp(value.sum + (has_it ? usual.more : -usual.less), 0.0, value.cap);
+    }
+  }
+  void restart() override {
+    for (OfValue& value : values_) {
+      value.sum = 0;
+    }
+  }
+  void capAt(const std::vector<double>& limits) override {
+    for (std::size_t number = 0; number < values_.size(); ++number) {
+      const double limit = limits[expected_.tracks()[number]];
+      if (limit > 0) {  // never so where it is NaN
+        values_[number].cap = expected_.model().tuning().most_of_limit * limit;
+      }
+    }
+  }
+  void closeWindow(const Heard& /*heard*/, std::vector<double>& evidence) override {
+    for (std::size_t number = 0; number < values_.size(); ++number) {
+      evidence[expected_.tracks()[number]] = values_[number].sum;
+    }
+  }
+  std::optional<std::int64_t> onset(std::size_t track) const override {
+    return values_[expected_.numberOf(track)].since;
+  }
+  void explain(std::size_t track, const Heard& /*heard*/, const RecentEvents& /*events*/,
+               Suspect& suspect) const override {
+    const OfValue& value = values_[expected_.numberOf(track)];
+    const double usual = expected_.usual(expected_.numberOf(track)).share;
+    Reason& reason = suspect.reason;
+    reason.kind = Kind::kFast;
+    reason.unit = "share";
+    reason.value = value.messages > 0 ? static_cast<double>(value.with) / value.messages : 0;
+    reason.usual = usual;
+    reason.usual_shortest = 0;
+    reason.usual_longest = usual;
+    char text[100];
+    std::snprintf(text, sizeof text, "%u of the last %u messages, usually %.0f %% at most",
+                  value.with, value.messages, 100 * usual);
+    reason.words = text;
+  }
+
+ private:
+  struct OfValue {
+    double sum = 0;
+    double cap = kMost;
+    std::int64_t since = 0;      // the first message since the sum was 0 [ns]
+    std::uint32_t with = 0;      // the value, since then
+    std::uint32_t messages = 0;  // of all values, since then
+  };
+
+  const ExpectedShares& expected_;
+  std::vector<OfValue> values_;  // by number of the track
+};
+
+std::unique_ptr<ChannelState> ExpectedShares::start() const {
+  return std::make_unique<SharesState>(*this);
+}
+
+}  // namespace
+
+std::vector<Track> Share::watch(const Choice& choice) const {
+  std::vector<Track> tracks;
+  for (const Values& values : valuesIn(choice.both)) {
+    for (const EventId id : values.ids) {
+      if (values.ids.size() > 1 && shareOf(choice.both, id, values) < kMostUsual) {
+        tracks.push_back({this, id, id});
+      }
+    }
+  }
+  return tracks;
+}
+
+std::unique_ptr<const Expectation> Share::expect(const Model& model, const Halves& /*halves*/,
+                                                 std::vector<std::size_t> tracks) const {
+  return std::make_unique<ExpectedShares>(model, std::move(tracks));
+}
+
+}  // namespace self_awareness::core::evidence

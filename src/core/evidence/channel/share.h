@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/evidence/channel/channel.h"
+
+namespace self_awareness::core::evidence {
+
+/// Share (docs/method.md, section 3.11): a value of a type field that comes more often among the
+/// messages of its sender on a topic than in training, as of goals that fail. Evidence is a CUSUM
+/// of how much better they fit that.
+class Share : public Channel {
+ public:
+  std::string name() const override { return "share"; }
+  Finding finding() const override { return Finding::kUnusual; }
+  Kind kind() const override { return Kind::kFast; }
+  bool hasShareOfItsOwn() const override { return true; }
+  std::vector<Track> watch(const Choice& choice) const override;
+  std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
+                                            std::vector<std::size_t> tracks) const override;
+  Margins margins(const Tuning& tuning) const override {
+    return {tuning.least_deadline_margin, tuning.least_deadline_margin};
+  }
+};
+
+}  // namespace self_awareness::core::evidence
