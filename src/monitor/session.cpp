@@ -217,8 +217,7 @@ std::vector<ros1::CommunicationState::Stranger> Session::strangers() const {
 std::vector<std::string> Session::disarmed() const {
   std::vector<std::string> words;
   for (const core::Disarmed& each : detector_.disarmed()) {
-    words.push_back(sourceAndTopic(each.id) +
-                    (each.after ? " after " + sourceAndTopic(*each.after) : ""));
+    words.push_back(sourceAndTopic(each.id) + " after " + sourceAndTopic(each.after));
   }
   return words;
 }

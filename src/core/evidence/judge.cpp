@@ -304,17 +304,7 @@ std::vector<Disarmed> Judge::disarmed() const {
   std::vector<Disarmed> disarmed;
   for (const std::size_t index : scorer_.disarmed()) {
     if (limits_ && !std::isnan(limits_->tracks[index])) {
-      const Track& track = model_->tracks()[index];
-      Disarmed one{track.to, std::nullopt};
-      if (track.from != track.to) {
-        one.after = track.from;
-      }
-      const auto isSame = [&](const Disarmed& other) {  // slower and faster are one pace
-        return other.id == one.id && other.after == one.after;
-      };
-      if (std::none_of(disarmed.begin(), disarmed.end(), isSame)) {
-        disarmed.push_back(one);
-      }
+      disarmed.push_back({model_->tracks()[index].to, model_->tracks()[index].from});
     }
   }
   return disarmed;

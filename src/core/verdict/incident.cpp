@@ -39,8 +39,8 @@ bool atOnce(const Occurrence::Named& first, const Occurrence::Named& other, bool
   if (first.kind == Kind::kStranger || other.kind != first.kind) {
     return other.kind == first.kind;
   }
-  // Only the graph tells victims then.
-  return graph_is_known && other.abnormal &&
+  // Only the graph tells victims then; whose input loses messages loses none itself.
+  return (graph_is_known || first.kind == Kind::kLossy) && other.abnormal &&
          std::abs(other.onset - first.onset) <= Incidents::kJoined;
 }
 

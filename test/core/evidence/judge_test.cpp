@@ -68,7 +68,7 @@ TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
 
 TEST_F(EvidenceJudgeTest, SaysWhatIsNotWatchedNow) {
   const auto pairs_of = [](const core::Judge& judge) {
-    std::vector<std::pair<EventId, std::optional<EventId>>> pairs;
+    std::vector<std::pair<EventId, EventId>> pairs;
     for (const Disarmed& each : judge.disarmed()) {
       pairs.emplace_back(each.id, each.after);
     }
@@ -78,7 +78,7 @@ TEST_F(EvidenceJudgeTest, SaysWhatIsNotWatchedNow) {
   EXPECT_TRUE(pairs_of(*newJudge(limits_)).empty()) << "no limit, not judged";
   limit(kPairs, kB, kA) = 14;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
-  const std::vector<std::pair<EventId, std::optional<EventId>>> b_after_a{{kB, kA}};
+  const std::vector<std::pair<EventId, EventId>> b_after_a{{kB, kA}};
   EXPECT_EQ(pairs_of(*judge), b_after_a);
   feed(*judge, 0);
   EXPECT_TRUE(pairs_of(*judge).empty());

@@ -131,6 +131,17 @@ TEST_F(IncidentsTest, WhatIsWrongWithOthersOrBeganLaterIsNotTheSame) {
   EXPECT_EQ(one().others, (Names{"/imu", "/gps"}));
 }
 
+TEST_F(IncidentsTest, WhoLosesMessagesOverOneLinkDoesSoTogetherWithoutAGraph) {
+  Occurrence link = alarm(10, 30, {"/imu", "/gps", "/camera"});
+  for (Occurrence::Named& named : link.named) {
+    named.kind = Kind::kLossy;
+  }
+  link.named[2].kind = Kind::kSlow;
+  add(link);
+  EXPECT_EQ(one().together, Names{"/gps"});
+  EXPECT_EQ(one().others, Names{"/camera"});
+}
+
 TEST_F(IncidentsTest, SevenRestartsInTenMinutesAreOne) {
   for (int i = 0; i < 7; ++i) {
     add(alarm(80 * i, 80 * i + 5, {"/player"}));

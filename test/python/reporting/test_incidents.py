@@ -103,6 +103,30 @@ def test_several_that_fail_at_once_are_in_the_headline() -> None:
     assert incident.headline == '/a (/t) fell silent at 28.0 s, and came back at 36.1 s.'
 
 
+def test_a_victim_that_stays_silent_is_told_beside_a_cause_that_is_back() -> None:
+    graph = [('/a', '/t', '/b'), ('/b', '/u', '/c')]
+    named = [suspect('/a', silence=Silence(28.0, 36.0)),
+             suspect('/b', silence=Silence(28.1, 36.1)),
+             suspect('/c', 'stopped sending', Silence(28.2, None))]
+    incident, = found(interval(28.7, 60.0, named, cleared=False), graph=graph)
+    assert incident.victims == ['/b', '/c']
+    assert incident.further == ['/c (/t) stopped sending at 28.2 s.']
+    named[0] = suspect('/a', 'stopped sending', Silence(28.0, None))
+    incident, = found(interval(28.7, 60.0, named, cleared=False), graph=graph)
+    assert incident.further == [], 'it waits'
+
+
+def test_others_that_are_to_blame_for_a_suspicion_of_their_own_are_told() -> None:
+    hang = suspect('/a', silence=Silence(28.0, 36.0))
+    incident, = found(
+        interval(28.7, 38.0, [hang, suspect('/b', kind='slow')]),
+        interval(40.0, 52.0, [suspect('/b', 'sends too seldom', kind='slow')], SUSPICION),
+        interval(53.0, 70.0, [suspect('/b', 'sends too seldom', kind='slow')], SUSPICION))
+    assert incident.others == ['/b'] and incident.cause == '/a'
+    assert incident.further == [
+        '/b (/t) sends too seldom 2 times, the longest from 53.0 s to 70.0 s.']
+
+
 def test_only_who_did_not_come_back_has_stopped() -> None:
     gone = [suspect(name, 'stopped sending', Silence(8.0, None)) for name in ('/a', '/b')]
     assert headline(interval(8.5, 20.0, gone, cleared=False), [], 1) == (

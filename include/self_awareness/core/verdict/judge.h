@@ -44,11 +44,10 @@ struct Judgement {
   std::string waiting;
 };
 
-/// Delays, or a pace, that do not count until they have been as in training (docs/method.md,
-/// section 3.7).
+/// Delays that do not count until they have been as in training (docs/method.md, section 3.7).
 struct Disarmed {
-  EventId id = 0;                ///< the event type that comes
-  std::optional<EventId> after;  ///< another one, of a delay; none: its pace
+  EventId id = 0;     ///< the event type that comes
+  EventId after = 0;  ///< the one that it comes after
 };
 
 /// Of which windows a judge names suspects: naming them takes time.

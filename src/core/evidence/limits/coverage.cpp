@@ -15,6 +15,11 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+// A silence that is found later is named if something else of its component is found so much
+// sooner.
+constexpr double kLate = 60;  // [s]
+constexpr double kFarLater = 10;
+
 // In a row, as the alarm's persistence takes by default.
 constexpr std::int64_t kAlarmWindows = 3;
 
@@ -42,6 +47,12 @@ std::string rounded(double seconds, const std::string& unit) {
   return text + unit;
 }
 
+/// When a silence is found, that is beyond its limit [s]: it is looked at when a window ends, and
+/// certain when the next one does.
+double foundBySilence(const Model& model, EventId id, double limit, std::int64_t window) {
+  return toSeconds(model.ageBeyond(id, limit) + 2 * window);
+}
+
 void addBlind(const Model& model, const Limits& limits, std::vector<Coverage>& coverages) {
   for (const Channel* channel : channels()) {
     if (channel->about().empty() || !model.tuning().isOn(channel->name())) {
@@ -66,6 +77,26 @@ void addBlind(const Model& model, const Limits& limits, std::vector<Coverage>& c
         coverages[model.componentIndex(id)].blind.push_back(
             {channel->about(), model.vocabulary().at(id).scope, why});
       }
+    }
+  }
+}
+
+/// Names the topics of which a silence is found far later than the death of their component, which
+/// is told by another one.
+void addLate(const Model& model, const Limits& limits, std::int64_t window,
+             std::vector<Coverage>& coverages) {
+  for (std::size_t number = 0; number < model.tracks().size(); ++number) {
+    const EventId id = model.tracks()[number].to;
+    Coverage& of = coverages[model.componentIndex(id)];
+    if (model.finding(number) != Finding::kSilent || std::isnan(limits.tracks[number]) ||
+        !of.death_found_after) {
+      continue;
+    }
+    const double found = foundBySilence(model, id, limits.tracks[number], window);
+    if (found > kLate && found > kFarLater * *of.death_found_after) {
+      of.blind.push_back({"silence", model.vocabulary().at(id).scope,
+                          "until " + rounded(found, " s") + ", since it paused for " +
+                              rounded(toSeconds(model.longestGap(id)), " s") + " in training"});
     }
   }
 }
@@ -126,8 +157,7 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
     if (accepted && isAbsence(finding)) {
       of.accepted = of.accepted || judged;
     } else if (finding == Finding::kSilent && judged) {
-      // It is looked at when a window ends, and certain when the next one does.
-      const double found = toSeconds(model.ageBeyond(track.to, limit) + 2 * window);
+      const double found = foundBySilence(model, track.to, limit, window);
       of.death_found_after = std::min(of.death_found_after.value_or(found), found);
     } else if (isAbsence(finding) && judged) {
       const double found = model.expectation(number).timeUntil(number, limit) * 1e-9 +
@@ -143,6 +173,7 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
     }
   }
   addBlind(model, limits, coverages);
+  addLate(model, limits, window, coverages);
   for (Coverage& of : coverages) {
     of.more_starts = of.late_answers ? 0 : of.more_starts;
     of.graph_helps = of.graph_helps && !of.late_answers;

@@ -32,9 +32,6 @@ class Arming {
   };
 
   bool armed() const { return armed_; }
-  /// Whether it once was not as in training, since the start.
-  bool failed() const { return failures_ > 0; }
-  void arm() { armed_ = true; }
   /// Takes in one event of what is not armed; every block of events that is not as in training
   /// doubles the next one.
   void add(double surprise, const Numbers& numbers) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -59,6 +60,32 @@ TEST_F(CoverageTest, ADeathIsFoundSoonerWhileItIsAsked) {
   EXPECT_TRUE(of(kB).isWatched());
   EXPECT_FALSE(of(kB).death_found_after);
   EXPECT_FALSE(of(kA).found_when_asked);
+}
+
+TEST(CoverageOfTopics, ASilenceThatIsFoundFarLaterThanTheDeathIsNamed) {
+  const std::vector<EventType> types{{"/a", "/x", "T"}, {"/a", "/y", "T"}};
+  const auto start = [](unsigned seed) {
+    return together(
+        {timer(kA, 0, kLength, kSecond / 5), irregular(kB, 0, kLength, 3 * kSecond, seed)});
+  };
+  const Model model(watchAll(countsOf({start(1)}, types), countsOf({later(start(2))}, types)));
+  const auto blindWith = [&](std::int64_t silence) {
+    std::vector<double> limits = allTracks(model, kNone);
+    ofTrack(limits, model, kOverdue, kA) = model.overdue(kA, kSecond);
+    ofTrack(limits, model, kOverdue, kB) = model.overdue(kB, silence);
+    std::vector<Coverage::Blind> blind =
+        coverageOf(model, {limits, {}}, {}, kWindow, false).at(0).blind;
+    blind.erase(std::remove_if(blind.begin(), blind.end(),
+                               [](const auto& each) { return each.about != "silence"; }),
+                blind.end());
+    return blind;
+  };
+  EXPECT_TRUE(blindWith(30 * kSecond).empty());
+  const std::vector<Coverage::Blind> blind = blindWith(90 * kSecond);
+  ASSERT_EQ(blind.size(), 1U);
+  EXPECT_EQ(blind[0].about, "silence");
+  EXPECT_EQ(blind[0].topic, "/y");
+  EXPECT_EQ(blind[0].why.find("until 90 s, since it paused for "), 0U) << blind[0].why;
 }
 
 TEST(FoundAfter, SaysTheSoonerOneWhileItIsNeeded) {

@@ -37,8 +37,8 @@ struct Coverage {
   /// one that it answers reach it.
   bool graph_helps = false;
 
-  /// What is not judged of a topic, though it looks as if it could be: "content of /fix: it
-  /// repeated for 522 s in training".
+  /// What is not judged of a topic, or far later than of others of its component, though it looks
+  /// as if it could be: "content of /fix: it repeated for 522 s in training".
   struct Blind {
     std::string about;
     std::string topic;
