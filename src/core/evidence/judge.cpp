@@ -231,9 +231,13 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     // Who is within his own range is no suspect because somebody else is unknown.
     judgement.suspects = who_sends_.alone(window, scorer_, suspects == NameSuspects::kAlways);
   }
-  if (suspects != NameSuspects::kNever) {
-    const std::vector<Suspect>& faster = slower_clock_.suspects();
-    judgement.suspects.insert(judgement.suspects.end(), faster.begin(), faster.end());
+  for (const Suspect& faster : slower_clock_.suspects()) {
+    const bool is_named =
+        std::any_of(judgement.suspects.begin(), judgement.suspects.end(),
+                    [&](const Suspect& named) { return named.component == faster.component; });
+    if (suspects != NameSuspects::kNever && !is_named) {
+      judgement.suspects.push_back(faster);
+    }
   }
   accepted_.leaveOut(judgement.suspects);
   judgement.waiting = waitingIn(judgement.suspects);

@@ -45,8 +45,9 @@ void blame(const Suspect& suspect, Alarm& alarm) {
 /// for nothing else.
 void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Alarm& alarm) {
   const bool was_busy = alarm.kind == Kind::kBusyMachine;
-  const bool is_excused_no_more =
-      (was_busy && !verdict.busy) || (alarm.kind == Kind::kNewMode && !verdict.silent);
+  const bool is_excused_no_more = (was_busy && !verdict.busy) ||
+                                  (alarm.kind == Kind::kNewMode && !verdict.silent) ||
+                                  alarm.kind == Kind::kSlowerClock;  // which nobody is silent for
   const Suspect* culprit = alarm.suspectToBlame();
   if (!suspects.empty() && suspects.front().abnormal && isAbsence(suspects.front().reason.kind)) {
     const std::int64_t missed = suspects.front().missed;
@@ -88,14 +89,16 @@ bool isToldBetter(const Suspect& before, const Suspect& now) {
 }
 
 void growWith(const Verdict& verdict, Alarm& alarm) {
-  for (Suspect& suspect : alarm.suspects) {
-    for (const Suspect& now : verdict.suspects) {
-      if (isToldBetter(suspect, now)) {
-        if (suspect.component == alarm.culprit && suspect.reason.kind == alarm.kind) {
-          alarm.kind = now.reason.kind;
-          alarm.reason = now.reason.words;
+  for (std::vector<Suspect>* named : {&alarm.suspects, &alarm.later}) {
+    for (Suspect& suspect : *named) {
+      for (const Suspect& now : verdict.suspects) {
+        if (isToldBetter(suspect, now)) {
+          if (suspect.component == alarm.culprit && suspect.reason.kind == alarm.kind) {
+            alarm.kind = now.reason.kind;
+            alarm.reason = now.reason.words;
+          }
+          suspect.reason = now.reason;
         }
-        suspect.reason = now.reason;
       }
     }
   }
@@ -104,7 +107,8 @@ void growWith(const Verdict& verdict, Alarm& alarm) {
     alarm.reason = first.words;
   }
   for (const Suspect& now : verdict.suspects) {
-    if (now.reason.kind == Kind::kSlowerClock && alarm.culprit == now.component) {
+    if (now.reason.kind == Kind::kSlowerClock && alarm.culprit == now.component &&
+        alarm.kind == Kind::kFast) {
       alarm.kind = now.reason.kind;
       alarm.reason = now.reason.words;
     }

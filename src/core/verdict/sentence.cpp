@@ -166,7 +166,7 @@ std::string sentence(const Alarm& alarm, const std::string& shared) {
   if (story.kind == Kind::kBusyMachine && story.reason.empty()) {
     story.reason = alarm.busy ? describe(*alarm.busy) : "the machine was busy";
   }
-  story.back = alarm.over ? ", until " + story.end : "";
+  story.back = story.end.empty() ? "" : ", until " + story.end;
   const Suspect* const culprit = alarm.suspectToBlame();
   const bool is_left =
       alarm.culprit.empty() ? alarm.kind == Kind::kAllSilent && !alarm.silent : culprit == nullptr;

@@ -52,6 +52,7 @@ std::vector<core::Suspect> fromMessages(const std::vector<self_awareness::Suspec
       suspect.id = *id;
       suspect.component = message.component;
       suspect.topic = message.scope;
+      suspect.value = core::valueOf(vocabulary.at(*id));
       suspect.abnormal = message.abnormal;
       suspect.onset = fromRosTime(message.onset);
       suspect.since = fromRosTime(message.since);

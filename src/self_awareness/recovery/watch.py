@@ -100,7 +100,7 @@ class Watch:
             return (f'the monitor judges by windows of {window_s:g} s; a recovery takes '
                     f'{_ABNORMAL_S:g} s at most')
         if self._status.level == _ERROR and self._status.kind in BLAME_NOBODY:
-            return 'the machine is busy, or all are silent: no component is to blame'
+            return f'no component is to blame: {self._status.kind}'
         return ''
 
     def beside(self, now: float) -> List[str]:

@@ -20,9 +20,6 @@ constexpr std::int64_t kWindow = 100 * kMillisecond;
 /// Time between two starts of a robot.
 constexpr std::int64_t kStart = 1000 * kSecond;
 
-/// A time in the real world: recordings that overlap there are of one start.
-constexpr std::int64_t kNow = 1600000000 * kSecond;
-
 /// Ids in the recordings below, and the event types they stand for.
 constexpr EventId kA = 0;
 constexpr EventId kB = 1;

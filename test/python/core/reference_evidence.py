@@ -31,7 +31,7 @@ LEAST_EFFECT = (5e6, 0.02)
 """On delays, by default: [ns], and the share of the period."""
 LEAST_PACE = 8.0
 OTHER_PACES = {'slower': {2: 1 / 2, 4: 1 / 2},
-               'faster': {2: 1 / 3, 4: 1 / 3, **{bins: 1 / 60 for bins in range(5, 25)}}}
+               'faster': {2: 1 / 3, 4: 1 / 3, **{bins: 1 / 132 for bins in range(5, 49)}}}
 """Their shares, by how many bins gaps are longer or shorter."""
 LONGEST_GAP_OF_SERIES = 2 * SECOND
 SHORTEST_STALL = 50 * MS

@@ -175,13 +175,6 @@ class ReferenceScorer:
         watch.gaps += 1
         watch.lasted += gap
         watch.add(step)
-        if waited:
-            return
-        if watch.arming.failures == 0:
-            watch.arming.armed = True
-        elif not watch.arming.armed:
-            watch.arming.add(step + USUAL_SURPRISE)
-            watch.sum = 0.0 if watch.arming.armed else watch.sum
 
     def _add_delay(self, watch: Watch, t: int, track: Track) -> None:
         _, to, other = track
@@ -197,7 +190,9 @@ class ReferenceScorer:
         watch.arming.add(surprise)
 
     def _fail(self, end: int) -> None:
-        for watch in self._watches.values():
+        for track, watch in self._watches.items():
+            if LABELS[track[0]] != 'pairs':
+                continue
             if watch.is_abnormal():
                 watch.abnormal_windows += 1
                 if watch.abnormal_since is None:
@@ -258,7 +253,7 @@ class ReferenceScorer:
             stood_still = self._stood_still(last[0], stall, stalled)
             return self._model.overdue(kind, max(end - last[0] - stood_still, 0))
         watch = self._watches[track]
-        if LABELS[channel] == 'pace' and not self._model.is_other_rate(track, watch.gaps,
-                                                                       watch.lasted):
-            return 0.0
+        if LABELS[channel] == 'pace':
+            is_other = self._model.is_other_rate(track, watch.gaps, watch.lasted)
+            return watch.sum if is_other else 0.0
         return watch.sum if watch.arming.armed else 0.0

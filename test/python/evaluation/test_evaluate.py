@@ -98,7 +98,7 @@ def test_an_ablation_judges_each_robot_by_every_variant(tmp_path: Path,
     ['simulated', '--jobs', '0'], ['simulated', '--calibration', '5'],
     ['simulated', '--systems', 'oracle'], ['families', '--families', 'cars'],
     ['families', '--starts', '0'], ['families', '--starts', '17'], ['families', '--hours', '0'],
-    ['families', '--budgets', '0'], ['families', '--faults', 'flood'],
+    ['families', '--budgets', '0'], ['families', '--faults', 'rust'],
     ['families', '--seed', '0'], ['ablation', '--kinds', 'luck'],
     ['families', '--families', 'timers', 'stalls', '--hours', '20']])
 def test_wrong_arguments_are_refused(wrong: List[str], tmp_path: Path, capsys: Any) -> None:

@@ -18,7 +18,7 @@ struct Acceptance {
     kTime,         ///< when and how often it comes; that it falls silent is still judged
     kMessages,     ///< how old, complete, large and new its messages are
     kConnections,  ///< what it does not subscribe to
-    kNothing,      ///< what no component does: a busy machine, all silent, two senders
+    kNothing,      ///< what no component does: as isShared() says, but for a mode
     kMode,         ///< that components are off together while others go on
     kAbsence,      ///< that it is absent; while it is there, it is judged
     kAll           ///< whatever it does

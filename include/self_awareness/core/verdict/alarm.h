@@ -49,7 +49,7 @@ struct Alarm {
   std::vector<Suspect> later;  ///< of further components, each with its time (since)
 
   /// Whether it tells of what is new once, however long that lasts.
-  bool isToldOnce() const { return evidence == kUnknownEvents; }
+  bool isToldOnce() const { return level == Level::kSuspicion && evidence == kUnknownEvents; }
   /// The suspect that is the culprit; null: there is none.
   const Suspect* suspectToBlame() const;
 };

@@ -8,9 +8,9 @@
 #include "core/evidence/channel/owed.h"
 #include "core/evidence/channel/pace.h"
 #include "core/evidence/channel/pairs.h"
-#include "core/evidence/channel/share.h"
 #include "core/evidence/channel/silence.h"
 #include "core/evidence/channel/size.h"
+#include "core/evidence/channel/values.h"
 
 namespace self_awareness::core::evidence {
 
@@ -25,9 +25,9 @@ std::vector<const Channel*> channelsOfTheMethod() {
   static const Lost lost;
   static const Size size;
   static const Frozen frozen;
-  static const Share share;
-  return {&silence, &slower, &faster, &pairs,  &owed, &company,
-          &age,     &lost,   &size,   &frozen, &share};
+  static const Values values;
+  return {&silence, &slower, &faster, &pairs,  &owed,  &company,
+          &age,     &lost,   &size,   &frozen, &values};
 }
 
 std::string channelName(const Track& track) {

@@ -116,7 +116,10 @@ std::unique_ptr<const Expectation> Lost::expect(const Model& model, const Halves
                                                 std::vector<std::size_t> tracks) const {
   AttributeCounts all;
   for (const std::size_t track : tracks) {
-    all.merge(model.learned().type(model.tracks()[track].to).attributes);
+    const AttributeCounts& counts = model.learned().type(model.tracks()[track].to).attributes;
+    if (shareOf(counts) <= kMostOthers) {  // who loses more does so by itself
+      all.merge(counts);
+    }
   }
   return std::make_unique<ExpectedMessages<NumbersOfMessages>>(
       model, std::move(tracks), [&, of_all = shareOf(all)](EventId id) {

@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core::evidence {
@@ -39,9 +38,7 @@ std::vector<std::size_t> startsOf(const std::vector<Span>& recordings, std::int6
     const auto [last, is_first] =
         unknown.try_emplace(recording.robot, Unknown{number, recording.end});
     Unknown& start = last->second;
-    // Simulated time begins anew with each start.
-    const bool overlaps = isSimulated(recording.start) && recording.start < start.end;
-    if (is_first || recording.start - start.end >= same_start || overlaps) {
+    if (is_first || recording.start - start.end >= same_start) {
       start = {number++, recording.end};
     }
     start.end = std::max(start.end, recording.end);

@@ -1,6 +1,7 @@
 #include "core/evidence/excuse/slower_clock.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <utility>
 
@@ -12,6 +13,8 @@ namespace {
 
 // A pace is known to a fourth after a few messages: the first gap began with the old one.
 constexpr double kSameFactor = 1.25;
+// For so long after two were faster, one is so for the same reason [ns].
+constexpr std::int64_t kHold = 20 * kNanosecondsPerSecond;
 
 double factorOf(const Suspect& suspect) {
   return suspect.reason.value / suspect.reason.usual;
@@ -24,27 +27,27 @@ SlowerClock::SlowerClock(std::shared_ptr<const Model> model, const Explanation& 
 
 void SlowerClock::excuse(std::vector<Excess>& excesses, const Scorer& scorer,
                          const RecentEvents& events) {
-  const std::vector<Suspect> before = std::exchange(suspects_, {});
+  suspects_.clear();
   if (!isSimulated(scorer.heard().start())) {
     return;
   }
   const ByComponent faster = this->faster(excesses, scorer, events);
-  // What lasts becomes usual, of one sooner than of another one.
-  const auto wasFaster = [&](const auto& each) {
-    return std::any_of(before.begin(), before.end(), [&](const Suspect& suspect) {
-      return suspect.component == each.second.component;
-    });
-  };
-  if (!std::any_of(faster.begin(), faster.end(), wasFaster) &&
-      !haveNoOtherReason(faster, excesses, scorer.heard())) {
+  const std::int64_t now = scorer.heard().windowEnd();
+  if (haveNoOtherReason(faster, excesses, scorer.heard())) {
+    if (faster.size() > number_) {
+      number_ = faster.size();
+      reason_ = sendsFaster(number_, factorOf(faster.begin()->second));
+    }
+    last_ = now;
+  }
+  // When it is over, the sum of one falls sooner than that of another one.
+  if (!last_ || now - *last_ > kHold) {
+    restart();
     return;
   }
-  const Reason reason = faster.size() < before.size()
-                            ? before.front().reason
-                            : sendsFaster(faster.size(), factorOf(faster.begin()->second));
   for (const auto& [component, suspect] : faster) {
     suspects_.push_back(suspect);
-    suspects_.back().reason = reason;
+    suspects_.back().reason = reason_;
   }
   for (Excess& excess : excesses) {
     const Track& track = model_->tracks()[excess.track];
@@ -64,8 +67,10 @@ SlowerClock::ByComponent SlowerClock::faster(const std::vector<Excess>& excesses
   std::vector<double> factors;
   for (const Excess& excess : excesses) {
     const Track& track = model_->tracks()[excess.track];
-    if (excess.excuse == Excuse::kNone && track.channel->kind() == Kind::kFast &&
-        faster.count(excess.component) == 0) {
+    // Who does not come any more has kept its sum.
+    const bool comes = scorer.heard().silence(track.to) <= model_->longestGap(track.to);
+    if (excess.excuse == Excuse::kNone && track.channel->kind() == Kind::kFast && comes &&
+        excess.share > model_->tuning().near_limit && faster.count(excess.component) == 0) {
       Suspect suspect;
       suspect.id = track.to;
       suspect.component = model_->components()[excess.component];
@@ -93,7 +98,8 @@ bool SlowerClock::haveNoOtherReason(const ByComponent& faster, const std::vector
   }
   const bool is_abnormal =
       std::any_of(excesses.begin(), excesses.end(), [&](const Excess& excess) {
-        return excess.share > 1 && faster.count(excess.component) > 0;
+        return excess.share > 1 && faster.count(excess.component) > 0 &&
+               model_->tracks()[excess.track].channel->kind() == Kind::kFast;
       });
   bool others = false;
   for (EventId id = 0; id < model_->size(); ++id) {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/evidence/explain/excess.h"
@@ -24,7 +26,12 @@ class SlowerClock {
   /// @param scorer that has closed the window
   /// @param events of the scorer's recording
   void excuse(std::vector<Excess>& excesses, const Scorer& scorer, const RecentEvents& events);
-  void restart() { suspects_.clear(); }
+  /// Forgets that it was slower.
+  void restart() {
+    suspects_.clear();
+    last_.reset();
+    number_ = 0;
+  }
   /// One for each component that sends faster; empty: the clock is as usual.
   const std::vector<Suspect>& suspects() const { return suspects_; }
 
@@ -40,7 +47,10 @@ class SlowerClock {
 
   std::shared_ptr<const Model> model_;
   const Explanation& explanation_;
-  std::vector<Suspect> suspects_;  // of the last window
+  std::vector<Suspect> suspects_;     // of the last window
+  std::optional<std::int64_t> last_;  // time that two were faster [ns]
+  std::size_t number_ = 0;            // of those that were
+  Reason reason_;
 };
 
 }  // namespace self_awareness::core::evidence

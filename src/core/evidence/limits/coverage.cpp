@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "core/evidence/channel/channel.h"
 #include "core/evidence/channel/channels.h"
@@ -84,19 +86,32 @@ void addBlind(const Model& model, const Limits& limits, std::vector<Coverage>& c
 /// Names the topics of which a silence is found far later than the death of their component, which
 /// is told by another one.
 void addLate(const Model& model, const Limits& limits, std::int64_t window,
-             std::vector<Coverage>& coverages) {
+             const std::vector<bool>& may_be_silent, std::vector<Coverage>& coverages) {
+  struct Found {
+    double after = 0;  // [s]
+    EventId id = 0;    // of its value that tells it first
+  };
+  std::map<std::pair<std::size_t, std::string>, Found> by_topic;
   for (std::size_t number = 0; number < model.tracks().size(); ++number) {
     const EventId id = model.tracks()[number].to;
-    Coverage& of = coverages[model.componentIndex(id)];
-    if (model.finding(number) != Finding::kSilent || std::isnan(limits.tracks[number]) ||
-        !of.death_found_after) {
-      continue;
+    const bool accepted = id < may_be_silent.size() && may_be_silent[id];
+    if (model.finding(number) == Finding::kSilent && !std::isnan(limits.tracks[number]) &&
+        !accepted) {
+      const Found found{foundBySilence(model, id, limits.tracks[number], window), id};
+      Found& first =
+          by_topic.try_emplace({model.componentIndex(id), model.vocabulary().at(id).scope}, found)
+              .first->second;
+      first = found.after < first.after ? found : first;
     }
-    const double found = foundBySilence(model, id, limits.tracks[number], window);
-    if (found > kLate && found > kFarLater * *of.death_found_after) {
-      of.blind.push_back({"silence", model.vocabulary().at(id).scope,
-                          "until " + rounded(found, " s") + ", since it paused for " +
-                              rounded(toSeconds(model.longestGap(id)), " s") + " in training"});
+  }
+  for (const auto& [topic, found] : by_topic) {
+    Coverage& of = coverages[topic.first];
+    if (found.after > kLate &&
+        found.after > kFarLater * of.death_found_after.value_or(found.after)) {
+      of.blind.push_back({"silence", topic.second,
+                          "until " + rounded(found.after, " s") +
+                              ", its longest pause in training was " +
+                              rounded(toSeconds(model.longestGap(found.id)), " s")});
     }
   }
 }
@@ -173,7 +188,7 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
     }
   }
   addBlind(model, limits, coverages);
-  addLate(model, limits, window, coverages);
+  addLate(model, limits, window, may_be_silent, coverages);
   for (Coverage& of : coverages) {
     of.more_starts = of.late_answers ? 0 : of.more_starts;
     of.graph_helps = of.graph_helps && !of.late_answers;

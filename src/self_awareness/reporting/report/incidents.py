@@ -153,8 +153,8 @@ def _further(intervals: Sequence[Interval], main: Interval, victims: Sequence[st
     an alarm or a suspicion of their own, or fell silent in its alarm, and victims that stayed
     silent when it was back."""
     further: Dict[str, str] = {}
-    is_back = main.first is not None and (main.first.silence is None
-                                          or main.first.silence.back is not None)
+    is_back = (main.first is not None and main.first.silence is not None
+               and main.first.silence.back is not None)
     for each in main.named:
         stays = each.silence is not None and each.silence.back is None and not main.cleared
         if each.abnormal and (each.component in others and each.silence is not None
@@ -166,5 +166,6 @@ def _further(intervals: Sequence[Interval], main: Interval, victims: Sequence[st
             by_culprit.setdefault(interval.of.culprit, []).append(interval)
     for culprit, of_culprit in by_culprit.items():
         longest = max(of_culprit, key=lambda each: (each.level == ALARM, each.end - each.start))
-        further.setdefault(culprit, headline(longest, [], len(of_culprit)))
+        times = sum(each.level == longest.level for each in of_culprit)
+        further.setdefault(culprit, headline(longest, [], times))
     return list(further.values())

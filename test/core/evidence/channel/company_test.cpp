@@ -57,7 +57,7 @@ TEST_F(CompanyTest, WhoPausesTogetherIsInCompany) {
 }
 
 TEST_F(CompanyTest, PausesOfOneStartMayBeChance) {
-  learn(countsOf({modes(kNow)}), countsOf({modes(kNow + kSecond)}));
+  learn(countsOf({modes(kStart)}), countsOf({modes(kStart + kSecond)}));
   EXPECT_FALSE(watches(kA, kB));
 }
 

@@ -165,10 +165,10 @@ TEST(EvidenceTracks, ThoseFromOutsideAreChecked) {
 TEST(EvidenceTracks, EveryChannelHasANameOfItsOwnAndALabel) {
   EXPECT_EQ(channelNames(),
             (std::vector<std::string>{kOverdue, kSlower, kFaster, kPairs, kDeadlines, "company",
-                                      "age", "lost", "size", "frozen", "share"}));
-  const std::vector<std::string> labels{"overdue",   "pace",    "pace", "pairs",
-                                        "deadlines", "company", "age",  "lost",
-                                        "size",      "frozen",  "share"};
+                                      "age", "lost", "size", "frozen", "values"}));
+  const std::vector<std::string> labels{"overdue",   "pace",    "pace",  "pairs",
+                                        "deadlines", "company", "age",   "lost",
+                                        "size",      "frozen",  "values"};
   for (std::size_t k = 0; k < labels.size(); ++k) {
     const Track track = trackOf(channelNames()[k], kA, kA);
     EXPECT_EQ(channelName(track), channelNames()[k]);

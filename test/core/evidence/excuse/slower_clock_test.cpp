@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "../judged.h"
@@ -78,6 +79,24 @@ TEST_F(SlowerClockTest, WhoKeepsAnotherTimeIsNotToBlame) {
   EXPECT_EQ(told[0].evidence, "clock");
   EXPECT_EQ(told[0].reason,
             "the simulation may run slower: 2 nodes send 2.5 times as often by its clock");
+}
+
+TEST_F(SlowerClockTest, WhoDiesMeanwhileIsToBlame) {
+  const Events slower = robot(kSecond, {1, 2.5, 2.5, 1});
+  const Alarm alarm = alarmIn(without(slower, [](const Event& event) {
+    return event.id == 1 && event.stamp > kFault + 20 * kSecond;
+  }));
+  EXPECT_EQ(alarm.culprit, "/c1");
+  EXPECT_EQ(alarm.kind, Kind::kSilent);
+}
+
+TEST_F(SlowerClockTest, WhenItIsOverNobodyIsLeft) {
+  const Events slower = robot(kSecond, {1, 2.5, 2.5, 1});
+  const std::vector<Alarm> told = toldOf(together({slower, later(robot(kSecond), 2 * kFault)}));
+  ASSERT_EQ(told.size(), 1U);
+  EXPECT_NE(told[0].reason.find(": 2 nodes send 2.5 times"), std::string::npos) << told[0].reason;
+  EXPECT_TRUE(told[0].over);
+  EXPECT_LT(told[0].end, 2 * kFault + 30 * kSecond);
 }
 
 TEST_F(SlowerClockTest, InRealTimeItIsTheirs) {

@@ -85,7 +85,8 @@ TEST(CoverageOfTopics, ASilenceThatIsFoundFarLaterThanTheDeathIsNamed) {
   ASSERT_EQ(blind.size(), 1U);
   EXPECT_EQ(blind[0].about, "silence");
   EXPECT_EQ(blind[0].topic, "/y");
-  EXPECT_EQ(blind[0].why.find("until 90 s, since it paused for "), 0U) << blind[0].why;
+  EXPECT_EQ(blind[0].why.find("until 90 s, its longest pause in training was "), 0U)
+      << blind[0].why;
 }
 
 TEST(FoundAfter, SaysTheSoonerOneWhileItIsNeeded) {

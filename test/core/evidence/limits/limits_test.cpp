@@ -383,11 +383,10 @@ TEST_F(LimitFinderTest, PartsTogetherSayWhatTheRecordingDoes) {
 
 TEST_F(LimitFinderTest, WithoutAReasonNoRelationIsJudged) {
   // All of one start: the answers may be chance, but a message can get from A to B.
-  const Events normal = later(robot(200 * kSecond, 3), kNow);
+  const Events normal = robot(200 * kSecond, 3);
   const auto delay = [&](const SourceGraph& graph) {
-    const auto model =
-        std::make_shared<Model>(watch(countsOf({later(robot(100 * kSecond, 1), kNow)}),
-                                      countsOf({later(robot(100 * kSecond, 2), kNow)})));
+    const auto model = std::make_shared<Model>(
+        watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
     LimitFinder finder(model, {kWindow, 5 * kSecond}, graph);
     feed(finder, model, normal);
     const std::size_t track = indexOf(model->tracks(), kPairs, kB, kA);
@@ -414,11 +413,10 @@ TEST_F(LimitFinderTest, WithoutAReasonNoRelationIsJudged) {
 }
 
 TEST_F(LimitFinderTest, RecordingsThatWereNotTrainedOnCountAsStarts) {
-  const auto model =
-      std::make_shared<Model>(watch(countsOf({later(robot(100 * kSecond, 1), kNow)}),
-                                    countsOf({later(robot(100 * kSecond, 2), kNow)})));
+  const auto model = std::make_shared<Model>(
+      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
   LimitFinder finder(model, {kWindow, 5 * kSecond});
-  feed(finder, model, later(robot(100 * kSecond, 3), kNow + kStart));
+  feed(finder, model, later(robot(100 * kSecond, 3)));
   const std::size_t track = indexOf(model->tracks(), kPairs, kB, kA);
   const Relation relation = finder.find().relations.at(track);
   EXPECT_EQ(relation.starts, 2U);

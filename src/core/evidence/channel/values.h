@@ -4,12 +4,12 @@
 
 namespace self_awareness::core::evidence {
 
-/// Share (docs/method.md, section 3.11): a value of a type field that comes more often among the
+/// Values (docs/method.md, section 3.11): a value of a type field that comes more often among the
 /// messages of its sender on a topic than in training, as of goals that fail. Evidence is a CUSUM
 /// of how much better they fit that.
-class Share : public Channel {
+class Values : public Channel {
  public:
-  std::string name() const override { return "share"; }
+  std::string name() const override { return "values"; }
   Finding finding() const override { return Finding::kUnusual; }
   Kind kind() const override { return Kind::kFast; }
   bool hasShareOfItsOwn() const override { return true; }

@@ -40,11 +40,11 @@ std::optional<Begun> alarmOf(const core::Model& model, double aborted, double th
   return alarmIn(model.makeJudge(), robot(4 * kStart, 7, aborted, then));
 }
 
-TEST(ShareTest, GoalsThatFailMoreOftenAreFound) {
+TEST(ValuesTest, GoalsThatFailMoreOftenAreFound) {
   const core::Model model = learned(0.05);
   const std::optional<Begun> alarm = alarmOf(model, 0.05, 1);
   ASSERT_TRUE(alarm);
-  EXPECT_EQ(alarm->evidence, "share");
+  EXPECT_EQ(alarm->evidence, "values");
   EXPECT_GT(alarm->time, 4 * kStart + kEnd / 2);
   EXPECT_LT(alarm->time, 4 * kStart + kEnd / 2 + 60 * kSecond);
   ASSERT_FALSE(alarm->suspects.empty());
@@ -53,13 +53,29 @@ TEST(ShareTest, GoalsThatFailMoreOftenAreFound) {
   EXPECT_NE(alarm->suspects[0].reason.words.find(" messages, usually "), std::string::npos);
 }
 
-TEST(ShareTest, TheUsualShareIsNoNews) {
+TEST(ValuesTest, TheUsualShareIsNoNews) {
   for (const double usual : {0.02, 0.05, 0.2}) {
     EXPECT_FALSE(alarmOf(learned(usual), usual, usual)) << usual;
   }
 }
 
-TEST(ShareTest, WhoAlwaysSaysTheSameHasNone) {
+TEST(ValuesTest, WhoSaysNothingMoreHasNoShare) {
+  const core::Model model = learned(0.05);
+  const std::int64_t idle = 4 * kStart + kEnd / 2 + 120 * kSecond;
+  const Events goals = without(robot(4 * kStart, 7, 0.05, 1), [&](const Event& event) {
+    return event.id != kScan && event.stamp > idle;
+  });
+  bool was_abnormal = false;
+  bool is_abnormal = false;
+  judge(model.makeJudge(), goals, [&](const Verdict& verdict) {
+    is_abnormal = verdict.evidence.find("values") != std::string::npos;
+    was_abnormal = was_abnormal || is_abnormal;
+  });
+  EXPECT_TRUE(was_abnormal);
+  EXPECT_FALSE(is_abnormal);
+}
+
+TEST(ValuesTest, WhoAlwaysSaysTheSameHasNone) {
   EXPECT_FALSE(alarmOf(learned(0), 0, 0));
 }
 

@@ -1,10 +1,11 @@
-#include "core/evidence/channel/share.h"
+#include "core/evidence/channel/values.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "self_awareness/core/evidence/channel/model.h"
@@ -15,6 +16,10 @@ namespace {
 constexpr double kHour = 3600e9;  // [ns]
 // Who may have a larger share is not rare.
 constexpr double kMostUsual = 0.5;
+// Who has more values says what it likes.
+constexpr std::size_t kMostValues = 16;
+// Lines of a log come in bursts.
+const std::string kLog = "/rosout";
 // A share may be as large as so many standard deviations tell.
 constexpr double kDeviations = 3;
 // The sum that chance reaches so often in an hour at most.
@@ -22,31 +27,34 @@ constexpr double kByChance = 0.001;
 constexpr double kMost = 200;  // of a sum whose limit is not known
 
 /// All values of a sender on a topic, and how many messages had one of them.
-struct Values {
+struct Topic {
   std::vector<EventId> ids;
   std::uint64_t messages = 0;
 };
 
-std::vector<Values> valuesIn(const Statistics& counts) {
-  std::map<EventType, Values> by_type;
+std::vector<Topic> topicsIn(const Statistics& counts) {
+  std::map<EventType, Topic> by_type;
   for (EventId id = 0; id < counts.size(); ++id) {
     const EventType& type = counts.vocabulary().at(id);
-    if (!valueOf(type).empty() && !counts.vocabulary().tellsMode(id)) {
-      Values& values = by_type[withoutValue(type).value()];
-      values.ids.push_back(id);
-      values.messages += counts.type(id).events;
+    if (!valueOf(type).empty() && !counts.vocabulary().tellsMode(id) && type.scope != kLog) {
+      Topic& topic = by_type[withoutValue(type).value()];
+      topic.ids.push_back(id);
+      topic.messages += counts.type(id).events;
     }
   }
-  std::vector<Values> all;
-  for (auto& [type, values] : by_type) {
-    all.push_back(std::move(values));
+  std::vector<Topic> all;
+  all.reserve(by_type.size());
+  for (auto& [type, topic] : by_type) {
+    if (topic.ids.size() <= kMostValues) {
+      all.push_back(std::move(topic));
+    }
   }
   return all;
 }
 
 /// The largest share that is likely (Wilson, "Probable inference", 1927); 1: there is no message.
-double shareOf(const Statistics& counts, EventId id, const Values& values) {
-  const auto all = static_cast<double>(values.messages);
+double shareOf(const Statistics& counts, EventId id, const Topic& topic) {
+  const auto all = static_cast<double>(topic.messages);
   if (all == 0) {
     return 1;
   }
@@ -64,29 +72,32 @@ class ExpectedShares : public Expectation {
     double more = 0;   // what a message with the value adds to the sum [nat]
     double less = 0;   // what another one takes from it [nat]
     double least_limit = 0;
+    std::int64_t pause = 0;  // after which what was said before says nothing of now [ns]
   };
 
   ExpectedShares(const Model& model, std::vector<std::size_t> tracks)
       : Expectation(std::move(tracks)), model_(model), usual_(this->tracks().size()) {
     numbers_of_.resize(model.size());
-    for (const Values& values : valuesIn(model.learned())) {
+    for (const Topic& topic : topicsIn(model.learned())) {
       double an_hour = 0;
-      for (const EventId id : values.ids) {
+      for (const EventId id : topic.ids) {
         const double gap = model.learned().type(id).gaps > 0 ? model.meanGap(id) : kHour;
         an_hour += kHour / std::max(gap, 1.0);
       }
       for (std::size_t number = 0; number < this->tracks().size(); ++number) {
         const EventId of_track = model.tracks()[this->tracks()[number]].to;
-        if (std::find(values.ids.begin(), values.ids.end(), of_track) == values.ids.end()) {
+        if (std::find(topic.ids.begin(), topic.ids.end(), of_track) == topic.ids.end()) {
           continue;
         }
         Usual& usual = usual_[number];
-        usual.share = shareOf(model.learned(), of_track, values);
+        usual.share = std::min(shareOf(model.learned(), of_track, topic), kMostUsual);
         const double often = (1 + usual.share) / 2;
         usual.more = std::log(often / usual.share);
         usual.less = std::log((1 - usual.share) / (1 - often));
         usual.least_limit = std::max(std::log(an_hour / kByChance), model.tuning().least_pace);
-        for (const EventId id : values.ids) {
+        usual.pause = std::max(
+            kRateSpan, static_cast<std::int64_t>(model.tuning().most_mean_gaps * kHour / an_hour));
+        for (const EventId id : topic.ids) {
           numbers_of_[id].push_back(number);
         }
       }
@@ -128,9 +139,15 @@ class SharesState : public ChannelState {
         value.with = 0;
         value.messages = 0;
       }
+      value.last = arrival.stamp;
       value.with += has_it ? 1 : 0;
       ++value.messages;
       value.sum = std::clamp(value.sum + (has_it ? usual.more : -usual.less), 0.0, value.cap);
+    }
+  }
+  void forget(EventId id) override {
+    for (const std::size_t number : expected_.numbersOf(id)) {
+      values_[number].sum = 0;
     }
   }
   void restart() override {
@@ -146,9 +163,11 @@ class SharesState : public ChannelState {
       }
     }
   }
-  void closeWindow(const Heard& /*heard*/, std::vector<double>& evidence) override {
+  void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
     for (std::size_t number = 0; number < values_.size(); ++number) {
-      evidence[expected_.tracks()[number]] = values_[number].sum;
+      const OfValue& value = values_[number];
+      const bool lasts = heard.windowEnd() - value.last <= expected_.usual(number).pause;
+      evidence[expected_.tracks()[number]] = lasts ? value.sum : 0;
     }
   }
   std::optional<std::int64_t> onset(std::size_t track) const override {
@@ -166,7 +185,7 @@ class SharesState : public ChannelState {
     reason.usual_shortest = 0;
     reason.usual_longest = usual;
     char text[100];
-    std::snprintf(text, sizeof text, "%u of the last %u messages, usually %.0f %% at most",
+    std::snprintf(text, sizeof text, "%u of the last %u messages, usually %.1f %% at most",
                   value.with, value.messages, 100 * usual);
     reason.words = text;
   }
@@ -175,6 +194,7 @@ class SharesState : public ChannelState {
   struct OfValue {
     double sum = 0;
     double cap = kMost;
+    std::int64_t last = 0;       // stamp of the last message [ns]
     std::int64_t since = 0;      // the first message since the sum was 0 [ns]
     std::uint32_t with = 0;      // the value, since then
     std::uint32_t messages = 0;  // of all values, since then
@@ -190,11 +210,11 @@ std::unique_ptr<ChannelState> ExpectedShares::start() const {
 
 }  // namespace
 
-std::vector<Track> Share::watch(const Choice& choice) const {
+std::vector<Track> Values::watch(const Choice& choice) const {
   std::vector<Track> tracks;
-  for (const Values& values : valuesIn(choice.both)) {
-    for (const EventId id : values.ids) {
-      if (values.ids.size() > 1 && shareOf(choice.both, id, values) < kMostUsual) {
+  for (const Topic& topic : topicsIn(choice.both)) {
+    for (const EventId id : topic.ids) {
+      if (topic.ids.size() > 1 && shareOf(choice.both, id, topic) < kMostUsual) {
         tracks.push_back({this, id, id});
       }
     }
@@ -202,8 +222,8 @@ std::vector<Track> Share::watch(const Choice& choice) const {
   return tracks;
 }
 
-std::unique_ptr<const Expectation> Share::expect(const Model& model, const Halves& /*halves*/,
-                                                 std::vector<std::size_t> tracks) const {
+std::unique_ptr<const Expectation> Values::expect(const Model& model, const Halves& /*halves*/,
+                                                  std::vector<std::size_t> tracks) const {
   return std::make_unique<ExpectedShares>(model, std::move(tracks));
 }
 
