@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.robot import (AFTER_CRASH, CRASH, FLOOD, HALF_RATE, LATE,
                                                       LONGEST_START_S, LOSSES, MISSES, OLD, OTHER,
                                                       RESTART, SILENT, SLOWER, STARVED, STOP,
-                                                      WARNING, Fault, Output, Robot)
+                                                      WARNING, Fault, Robot)
 from self_awareness_evaluation.records import FaultRecord, Learning
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
@@ -148,8 +148,8 @@ class Records:
                STARVED: [''], SILENT: [''], SELDOM: self.robot.seldom, RESTART: regular,
                SLOWER: regular, OLD: self.robot.numbered[::_ONE_IN],
                LOSSES: self.robot.numbered[1::_ONE_IN],
-               OTHER: _sources(self.robot, lambda output: bool(output.other)),
-               FLOOD: _sources(self.robot, lambda output: output.datatype == WARNING),
+               OTHER: self.robot.sending(lambda output: bool(output.other)),
+               FLOOD: self.robot.sending(lambda output: output.datatype == WARNING),
                NEVER: self.robot.latching,
                **{kind: regular[first::len(AFTER_CRASH)]
                   for first, kind in enumerate(AFTER_CRASH)}}
@@ -233,11 +233,6 @@ def _stamps(recording: WindowedEvents, source: str) -> np.ndarray:
     """Return when a component sends [ns]."""
     ours = np.array([known.source == source for known in recording.event_types])
     return recording.stamps[ours[recording.ids]]
-
-
-def _sources(robot: Robot, has: Callable[[Output], bool]) -> List[str]:
-    """Return the components with such an output."""
-    return list(dict.fromkeys(output.source for output in robot.outputs if has(output)))
 
 
 def _spread(number: int, most: Optional[int]) -> Set[int]:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Dict, FrozenSet, Iterable, List, Optional, Set, Tuple
+from typing import Callable, Dict, FrozenSet, Iterable, List, Optional, Set, Tuple
 
 import numpy as np
 
@@ -162,6 +162,10 @@ class Robot:
         return [source for source in _distinct(output.source for output in self.outputs)
                 if source not in others]
 
+    def sending(self, has: Callable[[Output], bool]) -> List[str]:
+        """Return the components with such an output."""
+        return _distinct(output.source for output in self.outputs if has(output))
+
     @property
     def latching(self) -> List[str]:
         """The components that say something when they start, and nothing else."""
@@ -181,7 +185,7 @@ class Robot:
     @property
     def answering(self) -> List[str]:
         """The components that answer to another one."""
-        return _distinct(output.source for output in self.outputs if self._answers_others(output))
+        return self.sending(self._answers_others)
 
     def strangers_of(self, source: str, most: int) -> Tuple[str, ...]:
         """Return regular components that need neither a component nor each other, and which they
@@ -275,7 +279,7 @@ class Robot:
             return _waited(times, (since >= 0) & (since < _LASTS_S), scene, index)
         if fault.source not in ('', output.source):
             return times
-        hit = ((times >= begin_s + fault.onset_s) & (times < begin_s + fault.relief_s))
+        hit = _during(fault, times, begin_s)
         if fault.kind in (CRASH, SILENT, *AFTER_CRASH):
             return times[~hit]
         if fault.kind == RESTART:
@@ -359,6 +363,11 @@ def _is_hit(fault: Optional[Fault], kind: str, output: Output, times: np.ndarray
     """Return which times [s] of an output a fault of a kind concerns."""
     if fault is None or (fault.kind, fault.source) != (kind, output.source):
         return np.zeros(len(times), dtype=bool)
+    return _during(fault, times, begin_s)
+
+
+def _during(fault: Fault, times: np.ndarray, begin_s: float) -> np.ndarray:
+    """Return which times [s] lie in a fault."""
     return (times >= begin_s + fault.onset_s) & (times < begin_s + fault.relief_s)
 
 
