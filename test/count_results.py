@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Adds up the JUnit files below a folder: prints `N passed, N failed, N skipped`, and what failed.
+"""Adds up the JUnit files below a folder: `N passed, N failed, N skipped`, what failed, and why.
 
 Before that, the slowest tests, of those that took a second or more, and how many tests had a
 second try since the machine disturbed them.
@@ -16,6 +16,17 @@ import xml.etree.ElementTree
 SLOWEST = 20
 SECOND_TRY = 'once more: the machine'
 """Begin of the line that again_if_disturbed() of the rostests prints."""
+
+
+MOST_OF_REASON = 300
+"""Characters."""
+
+
+def reason(case: xml.etree.ElementTree.Element) -> str:
+    """Why a test case failed: the first line of what it says."""
+    said = next(each for each in case if each.tag in ('failure', 'error'))
+    lines = (said.get('message') or said.text or '').strip().splitlines() or ['']
+    return '{} {}'.format(said.get('type') or '', lines[0]).strip()[:MOST_OF_REASON]
 
 
 def main(folder: str, *kinds: str) -> int:
@@ -42,7 +53,7 @@ def main(folder: str, *kinds: str) -> int:
             name = '{} {}'.format(case.get('classname', path.stem), case.get('name'))
             times.append((float(case.get('time') or 0), name))
             if case.find('failure') is not None or case.find('error') is not None:
-                failed.append(name)
+                failed.append('{}: {}'.format(name, reason(case)))
             elif case.find('skipped') is not None or case.get('status') == 'notrun':
                 skipped.append(name)
             else:

@@ -8,14 +8,15 @@ import pytest
 
 PROGRAM = Path(__file__).parents[1] / 'count_results.py'
 PASSED = '<testsuite tests="1"><testcase classname="a" name="b"/></testsuite>'
-FAILED = '<testsuite tests="1"><testcase classname="a" name="c"><failure/></testcase></testsuite>'
+FAILED = ('<testsuite tests="1"><testcase classname="a" name="c"><error type="IndexError">no such '
+          'index\n  File "a.py"</error></testcase></testsuite>')
 
 
 @pytest.mark.parametrize('files, kinds, code, told', [
     ({'gtest-a': PASSED, 'pytest-b': PASSED}, ['gtest', 'pytest'], 0,
      '2 passed, 0 failed, 0 skipped\n'),
     ({'gtest-a': PASSED, 'pytest-b': FAILED}, [], 1,
-     'FAILED: a c\n1 passed, 1 failed, 0 skipped\n'),
+     'FAILED: a c: IndexError no such index\n1 passed, 1 failed, 0 skipped\n'),
     ({'gtest-a': PASSED}, ['gtest', 'pytest'], 1,
      'FAILED: pytest: no results\n1 passed, 1 failed, 0 skipped\n'),
     ({'rosunit-a': '<testsuite tests="3"><testcase classname="a" name="b" time="2.25"/>'
