@@ -26,11 +26,9 @@ from live_robot import LOAD_CORE, Configuration, Robot, pin, train, write_synthe
 from live_subjects import Bare, Monitor, Record, Subject, usage
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.live.master import own_master
-from self_awareness_evaluation.live.processes import Processes
+from self_awareness_evaluation.live.processes import Processes, own_master
 
-TOPICS = {163: 15, 1000: 60, 5000: 300, 20000: 500}
-"""By messages a second."""
+TOPICS = {163: 15, 1000: 60, 5000: 300, 20000: 500}  # by messages a second
 
 _WARM_UP_S = 2.0
 _MODEL_S = {163: 40.0, 1000: 40.0, 5000: 90.0, 20000: 20.0}

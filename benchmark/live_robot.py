@@ -19,10 +19,8 @@ from self_awareness_evaluation.live.processes import Processes
 NODES = 10
 IMAGE_TOPIC = '/camera/image'
 FULL_HD_BYTES = 1920 * 1080 * 3
-LOAD_CORE = 1
-"""Core of the publishers, the master and this program."""
-SUBJECT_CORE = 0
-"""Core of the program that is measured; nothing else runs on it."""
+LOAD_CORE = 1  # core of the publishers, the master and this program
+SUBJECT_CORE = 0  # core of the program that is measured; nothing else runs on it
 
 _PROGRAM = 'live_load'
 _TRAINING_WITHIN_S = 900.0
@@ -90,19 +88,14 @@ class Robot:
         self._tell(f'await {count}')
         self._answers()
 
-    def start(self, seconds: float) -> None:
-        """Let all nodes publish for so long; `published` waits for the end."""
-        self._tell(f'publish {seconds} {FULL_HD_BYTES if self.configuration.image else 0}')
+    def start(self, seconds: float, image_bytes: int = FULL_HD_BYTES) -> None:
+        """Let all nodes publish for so long, images, if there are any, of that size; `published`
+        waits for the end."""
+        self._tell(f'publish {seconds} {image_bytes if self.configuration.image else 0}')
 
     def published(self) -> int:
         """Wait until all have published; return the number of messages."""
         return sum(int(answer) for answer in self._answers())
-
-    def publish_for_training(self, seconds: float) -> None:
-        """Publish everything; images, if there are any, are tiny."""
-        image_bytes = _TINY_IMAGE_BYTES if self.configuration.image else 0
-        self._tell(f'publish {seconds} {image_bytes}')
-        self._answers()
 
     def crash(self, node: int) -> float:
         """Kill one node; return when [s since 1970]."""
@@ -134,7 +127,8 @@ def train(processes: Processes, robot: Robot, seconds: float, model: Path) -> No
     bag = model.with_suffix('.bag')
     recorder = processes.start('record', *record_command(bag, robot.topics))
     robot.await_subscribers(1)
-    robot.publish_for_training(seconds)
+    robot.start(seconds, _TINY_IMAGE_BYTES)
+    robot.published()
     processes.end(recorder)
     processes.run('train', _TRAINING_WITHIN_S, 'rosrun', 'self_awareness', 'train', str(bag),
                   '--start', '1', '-o', str(model))

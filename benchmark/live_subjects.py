@@ -40,56 +40,54 @@ def usage(pid: int) -> Usage:
 
 
 class Subject(abc.ABC):
-    """A program that listens. It runs as a context manager."""
+    """A program that listens.
 
-    def __init__(self, processes: Processes) -> None:
+    Args:
+        processes: to start it among.
+        log: name of its log.
+        command: that starts it.
+    """
+
+    def __init__(self, processes: Processes, log: str, *command: str) -> None:
         self._processes = processes
+        self._log = log
+        self._command = command
 
-    @abc.abstractmethod
-    def start(self) -> subprocess.Popen:
-        """Start the program."""
+    def start(self, *more: str) -> subprocess.Popen:
+        """Start the program with further arguments."""
+        self._process = self._processes.start(self._log,
+                                              *pin(SUBJECT_CORE, *self._command, *more))
+        return self._process
 
-    @abc.abstractmethod
     def stop(self) -> int:
         """End the program; return how many messages it got."""
+        self._processes.end(self._process)
+        return self._count()
+
+    @abc.abstractmethod
+    def _count(self) -> int:
+        """Return how many messages it got."""
 
 
 class Bare(Subject):
     """Counts by ShapeShifter subscriptions."""
 
     def __init__(self, processes: Processes, folder: Path, topics: Sequence[str]) -> None:
-        super().__init__(processes)
-        self._log = folder / 'bare.log'
-        self._topics = topics
+        super().__init__(processes, 'bare', built('live_bare_subscriber'), *topics)
+        self._counted = folder / 'bare.log'
 
-    def start(self) -> subprocess.Popen:
-        """Start the program."""
-        self._process = self._processes.start(
-            'bare', *pin(SUBJECT_CORE, built('live_bare_subscriber'), *self._topics))
-        return self._process
-
-    def stop(self) -> int:
-        """End the program; return how many messages it got."""
-        self._processes.end(self._process)
-        return int(self._log.read_text().split()[-1])
+    def _count(self) -> int:
+        return int(self._counted.read_text().split()[-1])
 
 
 class Record(Subject):
     """`rosbag record` into a file in memory."""
 
     def __init__(self, processes: Processes, folder: Path, topics: Sequence[str]) -> None:
-        super().__init__(processes)
         self._bag = folder / 'measured.bag'
-        self._command = record_command(self._bag, topics)
+        super().__init__(processes, 'measured', *record_command(self._bag, topics))
 
-    def start(self) -> subprocess.Popen:
-        """Start the program."""
-        self._process = self._processes.start('measured', *pin(SUBJECT_CORE, *self._command))
-        return self._process
-
-    def stop(self) -> int:
-        """End the program; return how many messages it got."""
-        self._processes.end(self._process)
+    def _count(self) -> int:
         with rosbag.Bag(str(self._bag)) as bag:
             count = bag.get_message_count()
         self._bag.unlink()
@@ -102,8 +100,9 @@ class Monitor(Subject):
     NAME = '/watch'
 
     def __init__(self, processes: Processes, model: Path) -> None:
-        super().__init__(processes)
-        self._model = model
+        super().__init__(processes, 'monitor', built('self_awareness_node'),
+                         f'__name:={self.NAME[1:]}', f'_model:={model}', '_subscribe:=model')
+        self._folder = model.parent
         self._lock = threading.Lock()
         self._events = 0
         self.verdicts: List[Tuple[float, float]] = []
@@ -116,23 +115,16 @@ class Monitor(Subject):
             rospy.Subscriber(f'{self.NAME}/status', SelfAwareness, self._on_status),
             rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics)]
 
-    def start(self) -> subprocess.Popen:
-        """Start the program."""
+    def start(self, *more: str) -> subprocess.Popen:
+        """Start the program with further arguments."""
         with self._lock:
             self._events = 0
             self.verdicts = []
             self.level = -1
-        self._process = self._processes.start(
-            'monitor', *pin(SUBJECT_CORE, built('self_awareness_node'),
-                            f'__name:={self.NAME[1:]}', f'_model:={self._model}',
-                            '_subscribe:=model',
-                            # An alarm of the one before is none of this one's.
-                            '_recorder/directory:=' + mkdtemp(dir=self._model.parent)))
-        return self._process
+        # An alarm of the one before is none of this one's.
+        return super().start('_recorder/directory:=' + mkdtemp(dir=self._folder), *more)
 
-    def stop(self) -> int:
-        """End the program; return how many messages it got."""
-        self._processes.end(self._process)
+    def _count(self) -> int:
         with self._lock:
             return self._events
 

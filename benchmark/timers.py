@@ -9,8 +9,7 @@ import numpy as np
 import rosbag
 from std_msgs.msg import Empty
 
-SIZES = (15, 60, 150, 300, 1000)
-"""Numbers of event types that are measured."""
+SIZES = (15, 60, 150, 300, 1000)  # numbers of event types that are measured
 _START_NS = 1_600_000_000_000_000_000
 
 

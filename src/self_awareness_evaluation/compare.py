@@ -5,11 +5,9 @@ import re
 from pathlib import Path
 from typing import Callable, Dict, List, Sequence
 
-from self_awareness.output_files import replacing
 from self_awareness_evaluation import pages, row_files
 from self_awareness_evaluation.figures import grouped
-from self_awareness_evaluation.records import NORMAL, REAL
-from self_awareness_evaluation.robots import family_of
+from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.pages import FULL, RESEARCH, written_by
 from self_awareness_evaluation.tables import NONE, cells, table
@@ -32,22 +30,12 @@ half were found. False alarms and WARN are those without a fault, before onsets 
 _Rows = List[Row]
 
 
-def write(output: Path, before: Path, after: Path, command: str) -> Path:
-    """Write the page; return its name.
+def page(before: Path, after: Path, command: str) -> str:
+    """Return the page.
 
     Raises:
         ValueError: a folder holds no results, or the two were measured by other commands.
-        OSError: a folder or a file cannot be read or written.
     """
-    text = page(before, after, command)
-    path = output / f'{NAME}.md'
-    with replacing(str(path)) as temporary:
-        Path(temporary).write_text(text, encoding='utf-8')
-    return path
-
-
-def page(before: Path, after: Path, command: str) -> str:
-    """Return the page; see write()."""
     lines = [_INTRODUCTION.format(written=written_by(command))]
     names = _folders(before)
     missing = sorted(set(names) ^ set(_folders(after)))
@@ -70,12 +58,7 @@ def page(before: Path, after: Path, command: str) -> str:
 
 
 def _folders(top: Path) -> List[str]:
-    """Return the folder and those in it that hold rows, as paths from it.
-
-    Raises:
-        ValueError: there is none.
-        OSError: it cannot be read.
-    """
+    """Return the folder and those in it that hold rows, as paths from it."""
     found = [name for name in ('.', *sorted(path.name for path in top.iterdir() if path.is_dir()))
              if _files(top / name)]
     if not found:
@@ -106,8 +89,8 @@ def _section(before: _Rows, after: _Rows) -> List[str]:
     columns = _compared(before, after, kinds, lambda _: '')
     head, *body = ([column[row] for column in columns] for row in range(1, len(columns[0])))
     lines += table(head, body)
-    if len({_family(row) for row in before}) > 1:
-        head, *body = _compared(before, after, kinds, _family)
+    if len({row.subject.family for row in before}) > 1:
+        head, *body = _compared(before, after, kinds, lambda row: row.subject.family)
         lines += ['', *table(head, body)]
     return lines
 
@@ -130,10 +113,6 @@ def _subject(row: Row) -> str:
     told = [subject.system, subject.change, subject.learning,
             '' if subject.budget is None else f'budget {subject.budget:g}']
     return ', '.join(each for each in told if each)
-
-
-def _family(row: Row) -> str:
-    return row.subject.robot if row.subject.part == REAL else family_of(row.subject.robot)
 
 
 def _both(texts: Sequence[str]) -> str:

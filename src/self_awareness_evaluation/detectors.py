@@ -6,15 +6,14 @@ from typing import AbstractSet, Dict, Iterable, List, Optional, Sequence, Set, T
 
 import numpy as np
 
-from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, Alarm, DetectorParameters,
-                            EventType, EvidenceModel, Learner, Occurrence, PaperModel,
-                            TrainedModel, Tuning, Verdicts, fold_incidents, judge_by_evidence)
+from self_awareness import (DEFAULT_WINDOW, Alarm, DetectorParameters, EventType, EvidenceModel,
+                            Learner, Occurrence, PaperModel, TrainedModel, Tuning, Verdicts,
+                            fold_incidents, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
+from self_awareness_evaluation.records import WindowedEvents
 from self_awareness_evaluation.systems import (ALARM, FALSE_POSITIVE_RATE, Judged, SystemAlarm,
-                                               common_threshold, required)
-from self_awareness_evaluation.windowed_events import WindowedEvents
-from self_awareness_follow_me.scenario import load_scenario
+                                               common_threshold)
 
 
 class Paper:
@@ -26,14 +25,14 @@ class Paper:
             twice that share is taken, and so on, and where more than this, no window is abnormal.
     """
 
-    name = 'paper'
     watched = None  # it judges all together
+    expected_per_hour = None
 
     def __init__(self, rate: float = FALSE_POSITIVE_RATE, most_silent: float = 0.0) -> None:
         self._rate, self._most_silent = rate, most_silent
-        self._types: List[EventType] = []
-        self._model: Optional[PaperModel] = None
-        self._threshold: Optional[float] = None
+        self._types: List[EventType]
+        self._model: PaperModel
+        self.threshold: Optional[float] = None
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
@@ -48,25 +47,23 @@ class Paper:
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose s* by the common rule."""
-        verdicts = [self._verdicts(recording.encoded(self._types)) for recording in recordings]
+        verdicts = [self.verdicts(recording) for recording in recordings]
         scores = [np.nan_to_num(verdict.score[~verdict.settling]) for verdict in verdicts]
-        rate, self._threshold = self._rate, common_threshold(scores, self._rate)
-        while self._threshold <= 0.0 and 2.0 * rate <= self._most_silent:
+        rate, self.threshold = self._rate, common_threshold(scores, self._rate)
+        while self.threshold <= 0.0 and 2.0 * rate <= self._most_silent:
             rate *= 2.0
-            self._threshold = common_threshold(scores, rate)
+            self.threshold = common_threshold(scores, rate)
 
     def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
-        encoded = recording.encoded(self._types)
-        verdicts = self._verdicts(encoded)
-        return judged_of(verdicts, encoded.event_types,
-                         required(self._threshold, self.name, 'calibrate'))
+        return judged_of(self.verdicts(recording), recording.encoded(self._types).event_types)
 
-    def _verdicts(self, encoded: WindowedEvents) -> Verdicts:
+    def verdicts(self, recording: WindowedEvents) -> Verdicts:
+        """Return what the detector says of a recording."""
+        encoded = recording.encoded(self._types)
         # - 1, because the window in which the recording ends is the last one.
-        model: PaperModel = required(self._model, self.name, 'train')
-        return model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
-                           encoded.stamps, encoded.ids, encoded.end - 1)
+        return self._model.judge(DEFAULT_WINDOW, self.threshold, DetectorParameters(),
+                                 encoded.stamps, encoded.ids, encoded.end - 1)
 
 
 class Evidence:
@@ -81,12 +78,11 @@ class Evidence:
 
     def __init__(self, graph: Set[Tuple[str, str, str]], tuning: Optional[Tuning] = None,
                  budget: float = limits.BUDGET) -> None:
-        self.name = 'evidence' if graph else 'evidence_no_graph'
         self._graph = graph
         self._tuning = tuning or Tuning()
         self._budget = budget
-        self._trained: Optional[TrainedModel] = None
-        self._model: Optional[EvidenceModel] = None
+        self._trained: TrainedModel
+        self._model: EvidenceModel
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays and gaps."""
@@ -95,51 +91,45 @@ class Evidence:
             learner.add(recording.event_types, recording.stamps, recording.ids,
                         recording.fingerprint, robot=recording.robot,
                         attributes=recording.attributes)
-        trained = learner.learn()
+        self._trained = learner.learn()
         for recording in recordings:
-            trained.add_subscriptions(_lasting(recording))
-        self._trained = trained
-        self._model = EvidenceModel(trained)
+            self._trained.add_subscriptions(_lasting(recording))
+        self._model = EvidenceModel(self._trained)
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the limits."""
-        trained: TrainedModel = required(self._trained, self.name, 'train')
-        encoded = [recording.encoded(trained.event_types) for recording in recordings]
-        trained.calibration, = limits.find(
-            trained, DetectorParameters().settle_time, [self._budget],
+        encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
+        self._trained.calibration, = limits.find(
+            self._trained, DetectorParameters().settle_time, [self._budget],
             [HeldOut(recording.stamps, recording.ids, robot=recording.robot,
                      attributes=recording.attributes, waiting=recording.waiting)
              for recording in encoded])
 
     def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
-        trained: TrainedModel = required(self._trained, self.name, 'train')
-        return judged_of(self.verdicts(recording, DetectorParameters()),
-                         recording.encoded(trained.event_types).event_types, EVIDENCE_THRESHOLD,
-                         trained.graph)
+        return judged_of(self.verdicts(recording),
+                         recording.encoded(self._trained.event_types).event_types,
+                         self._trained.graph)
 
     @property
     def expected_per_hour(self) -> Optional[float]:
-        """The false alarms an hour that the calibration expects; None: it does not say."""
-        trained: TrainedModel = required(self._trained, self.name, 'train')
-        expected = math.nan if trained.calibration is None \
-            else trained.calibration.false_alarms_per_hour
-        return None if math.isnan(expected) else expected
+        """See System."""
+        calibration = self._trained.calibration
+        if calibration is None or math.isnan(calibration.false_alarms_per_hour):
+            return None
+        return calibration.false_alarms_per_hour
 
     @property
     def watched(self) -> Set[str]:
-        """The components whose death it would find."""
-        trained: TrainedModel = required(self._trained, self.name, 'train')
-        return {each.component for each in trained.coverage() if each.is_watched}
+        """See System."""
+        return {each.component for each in self._trained.coverage() if each.is_watched}
 
-    def verdicts(self, recording: WindowedEvents, parameters: DetectorParameters) -> Verdicts:
+    def verdicts(self, recording: WindowedEvents) -> Verdicts:
         """Return what the detector says of a recording, suspicions included."""
-        trained: TrainedModel = required(self._trained, self.name, 'train')
-        encoded = recording.encoded(trained.event_types)
+        encoded = recording.encoded(self._trained.event_types)
+        expected = self._trained.subscriptions
         # - 1, because the window in which the recording ends is the last one.
-        model: EvidenceModel = required(self._model, self.name, 'train')
-        expected = trained.subscriptions
-        return judge_by_evidence(trained, model, parameters, encoded.stamps,
+        return judge_by_evidence(self._trained, self._model, DetectorParameters(), encoded.stamps,
                                  encoded.ids, encoded.end - 1, encoded.event_types,
                                  missing=[(stamp, expected - present)
                                           for stamp, present in encoded.subscriptions],
@@ -153,16 +143,9 @@ def _lasting(recording: WindowedEvents) -> Set[Tuple[str, str]]:
     return set.intersection(*states) if states else set()
 
 
-def judged_of(verdicts: Verdicts, event_types: Sequence[EventType], threshold: float,
+def judged_of(verdicts: Verdicts, event_types: Sequence[EventType],
               graph: AbstractSet[Tuple[str, str, str]] = frozenset()) -> Judged:
-    """Return what one of the package's detectors says of a recording as all systems do.
-
-    Args:
-        verdicts: on all windows.
-        event_types: by id.
-        threshold: a score below it is abnormal.
-        graph: see Evidence.
-    """
+    """Return what one of the package's detectors says of a recording as all systems do."""
     incidents = incidents_of([*verdicts.alarms, *verdicts.suspicions], graph)
 
     def told(found: Sequence[Alarm]) -> List[SystemAlarm]:
@@ -172,8 +155,7 @@ def judged_of(verdicts: Verdicts, event_types: Sequence[EventType], threshold: f
                             alarm.level, alarm.culprit, alarm.kind, incidents.get(alarm.id))
                 for alarm in found]
 
-    return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
-                  verdicts.settling, told(verdicts.alarms), threshold, verdicts.suspicion,
+    return Judged(verdicts.start, verdicts.settling, told(verdicts.alarms), verdicts.suspicion,
                   told(verdicts.suspicions))
 
 
@@ -194,11 +176,3 @@ def incidents_of(found: Iterable[Alarm], graph: AbstractSet[Tuple[str, str, str]
                 all(each.over for each in of_it))
         spans.update(dict.fromkeys(incident.ids, span))
     return spans
-
-
-def scenario_graph() -> Set[Tuple[str, str, str]]:
-    """Return who listens to whom in the robot that comes with the package."""
-    components = load_scenario().components
-    return {(f'/{publisher.name}', f'/{topic}', f'/{listener.name}')
-            for publisher in components for listener in components
-            for topic in set(publisher.outputs()) & set(listener.inputs())}

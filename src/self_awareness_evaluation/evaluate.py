@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Optional, Sequence
 
 from self_awareness.commands import cli
+from self_awareness.output_files import replacing
 from self_awareness_evaluation import compare, offline, options, pages, readme_numbers
 from self_awareness_evaluation.live import command as live
 
@@ -20,9 +21,12 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _compare(arguments: argparse.Namespace, command: str) -> None:
+    text = compare.page(arguments.before, arguments.after, command)
     arguments.output.mkdir(parents=True, exist_ok=True)
-    written = compare.write(arguments.output, arguments.before, arguments.after, command)
-    print(f'written: {written}')
+    path = arguments.output / f'{compare.NAME}.md'
+    with replacing(str(path)) as temporary:
+        Path(temporary).write_text(text, encoding='utf-8')
+    print(f'written: {path}')
 
 
 def _pages(arguments: argparse.Namespace, _: str) -> None:

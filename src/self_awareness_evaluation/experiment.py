@@ -8,13 +8,11 @@ from typing import Callable, Dict, Iterable, Iterator, List, Optional, Sequence,
 
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.workers import Processes
-from self_awareness_evaluation.detectors import Evidence
-from self_awareness_evaluation.kept_rows import KeptRows
-from self_awareness_evaluation.records import NORMAL, FaultRecord, Learning, Robot
+from self_awareness_evaluation.records import NORMAL, FaultRecord, Learning, Robot, WindowedEvents
+from self_awareness_evaluation.row_files import KeptRows
 from self_awareness_evaluation.rows import Row, Subject, fault_row, normal_row
-from self_awareness_evaluation.systems import System, required
+from self_awareness_evaluation.systems import System
 from self_awareness_evaluation.variants import Variant
-from self_awareness_evaluation.windowed_events import WindowedEvents
 
 AT_ONCE = 16
 """Variants that judge a robot's records at a time: more of them do not fit into the memory."""
@@ -22,18 +20,13 @@ AT_ONCE = 16
 
 @dataclass(frozen=True)
 class Unit:
-    """What is measured at a time, and then kept: records, and variants that judge them.
+    """What is measured at a time, and then kept: records, and variants that judge them."""
 
-    Args:
-        rows: yields the rows of the unit.
-        part, name: of the records, see Robot.
-        variants: see there.
-    """
-
-    rows: Callable[[Unit], Iterable[Row]]
+    rows: Callable[[Unit], Iterable[Row]]  # yields the rows of the unit
+    # Of the records, see Subject.
     part: str
     name: str
-    variants: Tuple[Variant, ...]
+    variants: Tuple[Variant, ...]  # that judge
 
     def __str__(self) -> str:
         return self.name
@@ -49,14 +42,11 @@ def run(units: Sequence[Unit], path: Path, plan: str, jobs: int) -> List[Row]:
     """Return the rows of all units, in their order; `jobs` of them are measured at a time.
 
     Args:
-        units: see Unit.
         path: of the file of rows; what it holds already is not measured again.
         plan: what decides on the rows besides their subjects, in words.
-        jobs: processes.
 
     Raises:
         ValueError: the file holds rows of another plan or of another method.
-        OSError: it cannot be read or written.
     """
     kept = KeptRows(path, plan)
     left = [replace(unit, variants=variants[first:first + AT_ONCE]) for unit in units
@@ -85,14 +75,7 @@ def measure(robot_of: Callable[[], Robot], unit: Unit) -> Iterator[Row]:
 
 @dataclass(frozen=True)
 class _Judge:
-    """A system that has learned.
-
-    Args:
-        subject: see there.
-        variant: that the system is of.
-        system: that judges.
-        refused: why it cannot; empty: it can.
-    """
+    """A system that has learned; refused: why it cannot judge, empty: it can."""
 
     subject: Subject
     variant: Variant
@@ -103,9 +86,9 @@ class _Judge:
         """Return what it says of normal operation."""
         if self.refused:
             return Row(self.subject, NORMAL, refused=self.refused)
-        expected = self.system.expected_per_hour if isinstance(self.system, Evidence) else None
-        return normal_row(self.subject, self.system.judge(recording), expected,
-                          self._watched(robot.components), len(robot.components))
+        return normal_row(self.subject, self.system.judge(recording),
+                          self.system.expected_per_hour, self._watched(robot.components),
+                          len(robot.components))
 
     def fault_row(self, fault: FaultRecord) -> Row:
         """Return what it says of a fault."""
@@ -122,7 +105,8 @@ class _Judge:
 def _judges(unit: Unit, robot: Robot) -> Iterator[_Judge]:
     learned_from: Dict[Learning, Tuple[Sequence[WindowedEvents], ...]] = {}
     for variant in unit.variants:
-        learning = required(variant.learning, unit.name, 'learning')
+        learning = variant.learning
+        assert learning is not None, 'only real recordings say themselves'
         if learning not in learned_from:
             learned_from[learning] = robot.training(learning), robot.calibration(learning)
         training, calibration = learned_from[learning]

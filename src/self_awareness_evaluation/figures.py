@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass
+from statistics import median_low
 from typing import Any, Callable, Dict, Iterable, List, Optional, Sequence, Tuple, TypeVar
 
 from self_awareness.calibration import confidence
@@ -12,37 +13,26 @@ from self_awareness_evaluation.rows import NORMAL, Row
 
 _Key = TypeVar('_Key')
 
-SOON_S, WITHIN_S = 5.0, (1.0, 5.0, 50.0)
-"""Times in which faults are to be found [s]."""
+SOON_S, WITHIN_S = 5.0, (1.0, 5.0, 50.0)  # times in which faults are to be found [s]
 
 _NOTHING: Interval = (math.nan, math.nan)
 
 
 @dataclass(frozen=True)
 class Quiet:
-    """How normal operation was judged.
+    """How normal operation was judged."""
 
-    Args:
-        hours: of it, together [h].
-        alarms: false ones.
-        interval: 95 % interval of them, an hour.
-        warnings: times that a suspicion or an alarm began.
-        standing: share of the time in which an alarm stood; NaN: there is no time.
-        evidence: the alarms by what raised them, most often first.
-        expected: false alarms an hour that the calibrations promised on average; NaN: none did.
-        kept: share of the robots with no more than were promised; NaN: there is no robot.
-        watched, components: how many of a robot's components are watched on average, of how many;
-            NaN: not known, or the system judges all together.
-    """
-
-    hours: float
-    alarms: int
-    interval: Interval
-    warnings: int
-    standing: float
-    evidence: Tuple[Tuple[str, int], ...]
+    hours: float  # of it, together [h]
+    alarms: int  # false ones
+    interval: Interval  # 95 % interval of them, an hour
+    warnings: int  # times that a suspicion or an alarm began
+    standing: float  # share of the time in which an alarm stood; NaN: there is no time
+    evidence: Tuple[Tuple[str, int], ...]  # the alarms by what raised them, most often first
+    # False alarms an hour that the calibrations promised on average; NaN: none did.
     expected: float
-    kept: float
+    kept: float  # share of the robots with no more than were promised; NaN: there is no robot
+    # How many of a robot's components are watched on average, of how many; NaN: not known, or the
+    # system judges all together.
     watched: float
     components: float
 
@@ -77,29 +67,23 @@ class Quiet:
 
 @dataclass(frozen=True)
 class Found:
-    """How faults were found.
+    """How faults were found."""
 
-    Args:
-        latencies_s: from the onset to the first alarm, of each record; infinite where there was
-            none [s].
-        first, among_three: of the alarms that name somebody where somebody is guilty, those that
-            name a guilty one first, or among the first three, and the number of all of them.
-        at_end: likewise of what stands when the fault ends, whom it blames: a guilty one, or
-            nobody where nobody is guilty.
-        bystanders: of the alarms of which it is known, those that name who has nothing to do with
-            the fault, and the number of all of them.
-        noticed_s: to the first suspicion or alarm [s], likewise.
-        stood_before: records in which a false alarm stood at the onset.
-        after: alarms for who was back already, and the number of records with somebody who was.
-    """
-
+    # From the onset to the first alarm, of each record; infinite where there was none [s].
     latencies_s: Tuple[float, ...]
+    # Of the alarms that name somebody where somebody is guilty, those that name a guilty one
+    # first, or among the first three, and the number of all of them.
     first: Tuple[int, int]
     among_three: Tuple[int, int]
+    # Likewise of what stands when the fault ends, whom it blames: a guilty one, or nobody where
+    # nobody is guilty.
     at_end: Tuple[int, int]
+    # Of the alarms of which it is known, those that name who has nothing to do with the fault, and
+    # the number of all of them.
     bystanders: Tuple[int, int]
-    noticed_s: Tuple[float, ...]
-    stood_before: int
+    noticed_s: Tuple[float, ...]  # to the first suspicion or alarm [s], likewise
+    stood_before: int  # records in which a false alarm stood at the onset
+    # Alarms for who was back already, and the number of records with somebody who was.
     after: Tuple[int, int]
 
     @classmethod
@@ -123,7 +107,7 @@ class Found:
     @property
     def median_s(self) -> float:
         """The median latency [s]; infinite if fewer than half were found; NaN: no record."""
-        return quantile(self.latencies_s, 0.5)
+        return median(self.latencies_s)
 
     def within(self, seconds: float = math.inf) -> int:
         """Return how many were found in this time [s]."""
@@ -131,12 +115,12 @@ class Found:
 
     def share(self, seconds: float = math.inf) -> float:
         """Return the share of them; NaN: there is no record."""
-        return self.within(seconds) / self.records if self.records else math.nan
+        return part_of((self.within(seconds), self.records))
 
-    def interval(self, seconds: float = math.inf) -> Interval:
-        """Return its 95 % interval."""
-        return (confidence.wilson(self.within(seconds), self.records) if self.records
-                else _NOTHING)
+    @property
+    def interval(self) -> Interval:
+        """The 95 % interval of the share that was found."""
+        return confidence.wilson(self.within(), self.records) if self.records else _NOTHING
 
 
 def grouped(rows: Iterable[Row], key: Callable[[Row], _Key]) -> Dict[_Key, List[Row]]:
@@ -159,10 +143,14 @@ def normal(rows: Iterable[Row]) -> List[Row]:
     return [row for row in rows if row.fault == NORMAL]
 
 
-def quantile(values: Sequence[Optional[float]], fraction: float) -> float:
-    """Return a quantile by nearest rank; None counts as infinite. NaN: there is no value."""
-    ordered = sorted(_or_never(value) for value in values)
-    return ordered[max(0, math.ceil(fraction * len(ordered)) - 1)] if ordered else math.nan
+def median(times_s: Sequence[float]) -> float:
+    """Return the lower median of times, of which some may be infinite; NaN: there is none."""
+    return median_low(times_s) if times_s else math.nan
+
+
+def part_of(counts: Tuple[int, int]) -> float:
+    """Return the first of two counts as a share of the second; NaN: that is 0."""
+    return counts[0] / counts[1] if counts[1] else math.nan
 
 
 def rate_interval(robots: Sequence[Tuple[int, float]]) -> Interval:
@@ -200,11 +188,11 @@ def columns(rows: Sequence[Row], kinds: Sequence[str]) -> Dict[str, Any]:
 
 
 def _of_kind(found: Found) -> Dict[str, Any]:
-    low, high = found.interval()
+    low, high = found.interval
     return {'records': found.records, 'found': found.share(), 'low': low, 'high': high,
             **{f'within {seconds:g} s': found.share(seconds) for seconds in WITHIN_S},
-            'median_s': found.median_s, 'first': _part(found.first),
-            'among_three': _part(found.among_three), 'at_end': _part(found.at_end),
+            'median_s': found.median_s, 'first': part_of(found.first),
+            'among_three': part_of(found.among_three), 'at_end': part_of(found.at_end),
             'bystanders': found.bystanders[0],
             'stood_before': found.stood_before, 'alarms_after': found.after[0]}
 
@@ -213,10 +201,6 @@ def _short(value: Any) -> Any:
     if not isinstance(value, float):
         return value
     return f'{value:.4g}' if math.isfinite(value) else ''
-
-
-def _part(counts: Tuple[int, int]) -> float:
-    return counts[0] / counts[1] if counts[1] else math.nan
 
 
 def _counted(values: Iterable[Optional[bool]]) -> Tuple[int, int]:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -10,18 +11,17 @@ from typing import Any, Callable, Iterable, List, Optional, Sequence, Tuple
 from self_awareness import Tuning
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
-from self_awareness_evaluation import (catalogue, experiment, options, outages, pages, robots,
-                                       simulated, tunings)
+from self_awareness_evaluation import experiment, options, outages, pages, simulated, tunings
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.families.kinds import DEFAULT, FAMILIES
-from self_awareness_evaluation.families.protocol import AFTER_DEATH_S, KINDS, check_hours
+from self_awareness_evaluation.families.protocol import AFTER_DEATH_S, KINDS, check_hours, recorded
 from self_awareness_evaluation.pages import FULL, Section
 from self_awareness_evaluation.records import FAMILIES as OF_FAMILIES
 from self_awareness_evaluation.records import OWN, REAL, Learning
-from self_awareness_evaluation.robots import own_learning
 from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.sections import ablation, families, own_robot
 from self_awareness_evaluation.sections import recordings as real
+from self_awareness_evaluation.variants import EVIDENCE, SYSTEMS
 from self_awareness_evaluation.variants import KINDS as CHANGES
 from self_awareness_evaluation.variants import Variant, one_by_one, side_by_side
 from self_awareness_follow_me.faults import effect_of
@@ -48,7 +48,7 @@ def add(parts: Any) -> None:
     options.add(parser, '--seed', int, 1, 'N', 'the first seed')
     options.add(parser, '--calibration', options.recorded_s, _OWN_CALIBRATION_S, 'S', 'length of '
                 'the record that the threshold is chosen by [s]; the paper has 100')
-    _add_systems(parser, catalogue.NAMES)
+    _add_systems(parser, SYSTEMS)
     parser.add_argument('--faults', nargs='+', metavar='FAULT',
                         help='kinds of faults (default: all, and every regular component crashed '
                         'in turn)')
@@ -101,7 +101,8 @@ def _add_common(parser: argparse.ArgumentParser,
     parser.set_defaults(work=work)
     options.add_output(parser, 'the sections of the pages, the figures and, in the folder '
                        f'{FULL}, the rows, from which an interrupted run goes on,')
-    options.add_jobs(parser, f'{at_a_time} at a time')
+    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
+                        help=f'{at_a_time} at a time (default: as many as there are cores)')
 
 
 def _add_robots(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace, str], None],
@@ -109,19 +110,25 @@ def _add_robots(parser: argparse.ArgumentParser, work: Callable[[argparse.Namesp
                 in_turn: str = '') -> None:
     """Add the options of robots of families; number: the option that says how many of each."""
     _add_common(parser, work, 'robots')
-    options.add_families(parser, FAMILIES, names)
+    parser.add_argument('--families', nargs='+', choices=list(FAMILIES), default=names,
+                        metavar='FAMILY', help=f'robots of these: {", ".join(FAMILIES)} '
+                        f'(default: {" ".join(names)})')
     options.add(parser, number, cli.count, robots_each, 'N',
                 'robots of each family, each with the next seed')
     options.add_seed(parser)
-    options.add_learning(parser, in_turn)
+    options.add(parser, '--starts', options.starts, [2, 4], 'N', 'starts to train on, in turn'
+                f'{in_turn}; half as many, but one at least, are calibrated on')
+    for name, what in (('--training', 'train'), ('--calibration', 'calibrate')):
+        options.add(parser, name, options.recorded_s, 150.0, 'S',
+                    f'length of a recording to {what} on [s]')
     options.add(parser, '--hours', options.hours, hours, 'H',
                 'normal operation that is watched, for each robot')
 
 
 def _add_systems(parser: argparse.ArgumentParser, default: Sequence[str]) -> None:
-    parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES, default=default,
+    parser.add_argument('--systems', nargs='+', choices=SYSTEMS, default=default,
                         metavar='SYSTEM', help='evaluate these only, the first one in most '
-                        f'tables: {", ".join(catalogue.NAMES)} (default: {" ".join(default)})')
+                        f'tables: {", ".join(SYSTEMS)} (default: {" ".join(default)})')
     tunings.add(parser)
 
 
@@ -131,7 +138,8 @@ def _simulated(arguments: argparse.Namespace, command: str) -> None:
     for kind in faults:
         effect_of(scenario, kind)
     seeds = range(arguments.seed, arguments.seed + arguments.seeds)
-    units = _own(seeds, faults, _variants(arguments, [own_learning(arguments.calibration)]))
+    learning = simulated.own_learning(arguments.calibration)
+    units = _own(seeds, faults, _variants(arguments, [learning]))
     _measure(own_robot.NAME, units, f'faults {faults}', arguments, command, own_robot.section)
 
 
@@ -157,7 +165,7 @@ def _ablation(arguments: argparse.Namespace, command: str) -> None:
     own_faults = tuple(kind for kind in simulated.default_faults(load_scenario())
                        if kind.split(':')[0] not in _WARNED_ONLY)
     units = _own(range(arguments.seed, arguments.seed + arguments.own_seeds), own_faults,
-                 _learned(variants, own_learning(_OWN_CALIBRATION_S)))
+                 _learned(variants, simulated.own_learning(_OWN_CALIBRATION_S)))
     learnings = _learnings(arguments)
     units += [_robot(family, arguments.seed + shift, amount,
                      _learned(variants, learnings[(turn + shift) % len(learnings)]))
@@ -183,7 +191,9 @@ def _variants(arguments: argparse.Namespace, learnings: Sequence[Learning],
               budgets: Sequence[Optional[float]] = (None,)) -> List[Variant]:
     """Return the systems that the arguments ask for, with what they change of the method."""
     change = tunings.of(arguments)
-    tunings.check_used(change, arguments.systems)
+    if change and not set(EVIDENCE) & set(arguments.systems):
+        raise ValueError(f'--set, --without: they change {" and ".join(EVIDENCE)} only, and none '
+                         'of them is evaluated; add one to --systems')
     return side_by_side(arguments.systems, learnings, change, budgets)
 
 
@@ -198,12 +208,12 @@ def _learnings(arguments: argparse.Namespace) -> List[Learning]:
 
 def _own(seeds: Iterable[int], faults: Tuple[str, ...],
          variants: Sequence[Variant]) -> List[Unit]:
-    return [Unit(partial(experiment.measure, partial(robots.own, seed, faults)), OWN,
+    return [Unit(partial(experiment.measure, partial(simulated.own, seed, faults)), OWN,
                  f'{OWN} {seed}', tuple(variants)) for seed in seeds]
 
 
 def _robot(family: str, seed: int, amount: Tuple[Any, ...], variants: Sequence[Variant]) -> Unit:
-    return Unit(partial(experiment.measure, partial(robots.of_family, family, seed, *amount)),
+    return Unit(partial(experiment.measure, partial(recorded, family, seed, *amount)),
                 OF_FAMILIES, f'{family} {seed}', tuple(variants))
 
 

@@ -2,9 +2,8 @@
 from __future__ import annotations
 
 import argparse
-import os
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterable, Sequence
+from typing import Any, Callable, Dict
 
 from self_awareness.commands import cli
 from self_awareness_evaluation.families.protocol import MOST_STARTS
@@ -33,27 +32,6 @@ def add_seed(parser: Parser, told: str = 'the first seed') -> None:
     add(parser, '--seed', cli.count, 1, 'N', told)
 
 
-def add_families(parser: Parser, names: Iterable[str], default: Sequence[str]) -> None:
-    """Add the option that says of which families there are robots."""
-    parser.add_argument('--families', nargs='+', choices=list(names), default=default,
-                        metavar='FAMILY', help=f'robots of these: {", ".join(names)} '
-                        f'(default: {" ".join(default)})')
-
-
-def add_learning(parser: Parser, told: str = '') -> None:
-    """Add the options that say what is learned from; told: how starts take turns."""
-    add(parser, '--starts', starts, [2, 4], 'N', f'starts to train on, in turn{told}; half as '
-        'many, but one at least, are calibrated on')
-    for name, what in (('--training', 'train'), ('--calibration', 'calibrate')):
-        add(parser, name, recorded_s, 150.0, 'S', f'length of a recording to {what} on [s]')
-
-
-def add_jobs(parser: Parser, what: str) -> None:
-    """Add the option that says how many processes work; what: they do."""
-    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
-                        help=f'{what} (default: as many as there are cores)')
-
-
 def within(least: float, most: float, what: str,
            kind: Callable[[str], Any] = float) -> Callable[[str], Any]:
     """Return an argument type: a number of something in a range."""
@@ -65,13 +43,9 @@ def within(least: float, most: float, what: str,
     return cli.checked(convert)
 
 
-recorded_s = within(10.0, 86400.0, 'seconds')
-"""Argument type: length of a recording [s]."""
-starts = within(1, MOST_STARTS, 'starts', int)
-"""Argument type: starts to train on."""
-hours = within(0.02, 1000.0, 'hours')
-"""Argument type: how long something is watched [h]."""
-minutes = within(1.2, 60_000.0, 'minutes')
-"""Argument type: how long something is watched [min]."""
+recorded_s = within(10.0, 86400.0, 'seconds')  # argument type: length of a recording [s]
+starts = within(1, MOST_STARTS, 'starts', int)  # argument type: starts to train on
+hours = within(0.02, 1000.0, 'hours')  # argument type: how long something is watched [h]
+minutes = within(1.2, 60_000.0, 'minutes')  # argument type: how long something is watched [min]
 budget = within(0.001, 1000.0, 'false alarms an hour')
 """Argument type: false alarms an hour that limits are made for."""

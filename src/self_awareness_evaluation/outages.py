@@ -8,14 +8,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, Iterator, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterator, NamedTuple, Optional, Sequence, Tuple
 
-from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EncodingRules, EvidenceModel,
-                            Tuning, recordings)
+from self_awareness import DetectorParameters, EncodingRules, EvidenceModel, Tuning, recordings
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.judging import BOTH, evidence_judge
 from self_awareness.parts import BagPart
-from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
@@ -23,13 +21,11 @@ from self_awareness_evaluation import tunings
 from self_awareness_evaluation.detectors import Paper, judged_of
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.peers import LearnedFrequencyMonitor
-from self_awareness_evaluation.records import NORMAL
+from self_awareness_evaluation.records import NORMAL, WindowedEvents
 from self_awareness_evaluation.rows import HOUR_S, Row, Subject, at_end
-from self_awareness_evaluation.systems import Judged, System, SystemAlarm
-from self_awareness_evaluation.windowed_events import WindowedEvents
+from self_awareness_evaluation.systems import System, SystemAlarm
 
-OUTAGE = 'outage'
-"""Kind of fault: what is wrong in a recording of a real robot."""
+OUTAGE = 'outage'  # kind of fault: what is wrong in a recording of a real robot
 
 RATE = 0.01
 """The share of normal windows that may score below the threshold of systems that have one.
@@ -40,32 +36,21 @@ More than in simulated time: in a recording of 30 s, a share of 0.001 is less th
 MOST_SILENT = 0.1
 """The paper's detector cannot judge a robot of which more normal windows are silent than this."""
 
-Span = Tuple[float, float]
-"""Start and end, in seconds from the recording's first message."""
+Span = Tuple[float, float]  # start and end, in seconds from the recording's first message
 
-END = 1e9
-"""Stands for the end of a recording [s]."""
+END = 1e9  # stands for the end of a recording [s]
 
 
 @dataclass(frozen=True)
 class Case:
-    """A recording to judge, and normal operation of the same robot; paths are below the data's.
+    """A recording to judge, and normal operation of the same robot; paths are below the data's."""
 
-    Args:
-        name: in the table.
-        training: normal operation, the first part.
-        calibration: and the second.
-        judged: the recording to judge.
-        outage: what is to be found; None: nothing.
-        normal: where no alarm may be raised, nor stand; the rest is neither.
-    """
-
-    name: str
-    training: BagPart
-    calibration: BagPart
-    judged: str
-    outage: Optional[Span]
-    normal: Tuple[Span, ...]
+    name: str  # in the table
+    training: BagPart  # normal operation, the first part
+    calibration: BagPart  # and the second
+    judged: str  # the recording to judge
+    outage: Optional[Span]  # what is to be found; None: nothing
+    normal: Tuple[Span, ...]  # where no alarm may be raised, nor stand; the rest is neither
 
 
 def _social(judged: int, first: int, second: int) -> Case:
@@ -93,11 +78,7 @@ CASES = (
 
 
 def check_data(data: Path) -> None:
-    """Check that a folder has the recordings of all cases.
-
-    Raises:
-        ValueError: one is not in it.
-    """
+    """Check that a folder has the recordings of all cases."""
     for case in CASES:
         for path in (case.training.path, case.calibration.path, case.judged):
             if not (data / path).is_file():
@@ -105,35 +86,20 @@ def check_data(data: Path) -> None:
                                  'has it')
 
 
-@dataclass(frozen=True)
-class JudgedCase:
-    """What a system says of a recording.
+class JudgedCase(NamedTuple):
+    """What a system says of a recording."""
 
-    Args:
-        alarms, suspicions: stretches of time.
-        first: stamp of the first message [ns].
-        length: of the recording [s].
-        watched: event types, or topics, that it watches at all.
-    """
-
+    # Stretches of time.
     alarms: Sequence[SystemAlarm]
     suspicions: Sequence[SystemAlarm]
-    first: int
-    length: float
-    watched: int
+    # Stamps of the first message and of the last one [ns].
+    begin: int
+    end: int
+    watched: int  # event types, or topics, that it watches at all
 
 
 def rows(case: Case, data: Path, unit: Unit) -> Iterator[Row]:
-    """Yield what variants say of a case: of normal operation, and of the outage if there is one.
-
-    Args:
-        case: one of CASES.
-        data: folder of the recordings, see check_data().
-        unit: of the case.
-
-    Raises:
-        BagError: a recording cannot be read.
-    """
+    """Yield what variants say of a case: of normal operation, and of an outage if there is one."""
     for variant in unit.variants:
         subject = unit.subject(variant)
         try:
@@ -147,34 +113,30 @@ def rows(case: Case, data: Path, unit: Unit) -> Iterator[Row]:
 
 
 def _evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
-    """Let the evidence detector judge a case, with limits of what it learned from, by cross-fit.
-
-    Raises:
-        BagError: a recording cannot be read.
-        TooLittleError: the recordings are too short for limits.
-    """
+    """Let the evidence detector judge, with limits of what it learned from, by cross-fit."""
     trained_on = _trained(data, tuning, case.training, case.calibration)
     limits = many_bags.preliminary_limits(trained_on).limits
     trained = trained_on.model
     watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks, limits)
                if not math.isnan(limit)}
-    judged = recordings.read(trained, _below(data, BagPart(case.judged)))
+    recording = recordings.read(trained, _below(data, BagPart(case.judged)))
     verdicts = evidence_judge(trained, DetectorParameters())(
-        judged.stamps, judged.ids, judged.end, judged.event_types, attributes=judged.attributes)
-    return _case(judged, judged_of(verdicts, judged.event_types, EVIDENCE_THRESHOLD,
-                                   trained.graph), len(watched))
+        recording.stamps, recording.ids, recording.end, recording.event_types,
+        attributes=recording.attributes)
+    judged = judged_of(verdicts, recording.event_types, trained.graph)
+    return JudgedCase(judged.alarms, judged.suspicions, recording.origin, recording.end,
+                      len(watched))
 
 
 def _paper(case: Case, data: Path, _: Tuning) -> JudgedCase:
     system = Paper(RATE, MOST_SILENT)
-    judged, said, types = _learned(system, case, data)
-    return _case(judged, said, types if said.threshold > 0.0 else 0)
+    judged, types = _learned(system, case, data)
+    return judged._replace(watched=types if (system.threshold or 0.0) > 0.0 else 0)
 
 
 def _frequency_learned(case: Case, data: Path, _: Tuning) -> JudgedCase:
     system = LearnedFrequencyMonitor(RATE)
-    judged, said, _types = _learned(system, case, data)
-    return _case(judged, said, len(system.bounds))
+    return _learned(system, case, data)[0]._replace(watched=len(system.bounds))
 
 
 SYSTEMS: Dict[str, Callable[[Case, Path, Tuning], JudgedCase]] = {
@@ -190,9 +152,9 @@ def _trained(data: Path, tuning: Tuning, *parts: BagPart) -> Trained:
                            Counting(EncodingRules.defaults(), detector=BOTH, tuning=tuning))
 
 
-def _learned(system: System, case: Case, data: Path) -> Tuple[RecordingEvents, Judged, int]:
-    """Return a recording, what a system that has learned says of it, and how many event types of
-    messages its training has."""
+def _learned(system: System, case: Case, data: Path) -> Tuple[JudgedCase, int]:
+    """Return what a system that has learned says, and how many event types of messages its
+    training has."""
     trained = _trained(data, Tuning(), case.training).model  # for the encoding only
     found = [recordings.read(trained, _below(data, part))
              for part in (case.training, case.calibration, BagPart(case.judged))]
@@ -202,22 +164,18 @@ def _learned(system: System, case: Case, data: Path) -> Tuple[RecordingEvents, J
     system.train([training])
     system.calibrate([calibration])
     messages = sum(kind.is_message for kind in trained.event_types)
-    return found[-1], system.judge(judged), messages
+    alarms = system.judge(judged).alarms
+    return JudgedCase(alarms, (), found[-1].origin, found[-1].end, 0), messages
 
 
 def _below(data: Path, part: BagPart) -> BagPart:
     return BagPart(str(data / part.path), part.start, part.end)
 
 
-def _case(recording: RecordingEvents, judged: Judged, watched: int) -> JudgedCase:
-    return JudgedCase(judged.alarms, judged.suspicions, recording.origin,
-                      (recording.end - recording.origin) / SECOND_NS, watched)
-
-
 def case_rows(subject: Subject, case: Case, judged: JudgedCase) -> Iterator[Row]:
     """Yield the rows of a case."""
     def at(second: float) -> int:
-        return judged.first + nanoseconds(min(second, judged.length))
+        return min(judged.begin + nanoseconds(second), judged.end)
 
     normal = [(at(start), at(end)) for start, end in case.normal]
     false = [alarm for alarm in judged.alarms

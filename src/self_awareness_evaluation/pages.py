@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from self_awareness import METHOD
-from self_awareness.output_files import replacing
-from self_awareness_evaluation import row_files
+from self_awareness.output_files import replacing, save_table
 from self_awareness_evaluation.figures import columns, grouped
 from self_awareness_evaluation.rows import NORMAL, Row
 
@@ -34,15 +33,11 @@ def machine() -> Dict[str, Any]:
 def write_section(page: Path, name: str, text: str, title: str = '') -> None:
     """Replace the text between the markers `<!-- NAME -->` and `<!-- /NAME -->` of a page.
 
-    Args:
-        page: people write the rest of it.
-        name: of the section.
-        text: of the section.
-        title: a page that is not there is made, and one without the section gets it at its end,
-            below this heading; empty: that is an error.
+    A page that is not there is made, and one without the section gets it at its end, below a
+    title if there is one.
 
     Raises:
-        ValueError: the page has no such section.
+        ValueError: the page has no such section, and there is no title.
         OSError: the page cannot be read or written.
     """
     told = '# Measured\n' if title and not page.is_file() else page.read_text(encoding='utf-8')
@@ -59,18 +54,12 @@ def write_section(page: Path, name: str, text: str, title: str = '') -> None:
 
 @dataclass(frozen=True)
 class Section:
-    """What a measurement writes.
+    """What a measurement writes."""
 
-    Args:
-        name: of the section, and of the files.
-        title: above it, on a page that does not have it yet.
-        pages: by page, the lines of the section.
-        group: of a row in the file of figures: its name; None: there is none but all together.
-    """
-
-    name: str
-    title: str
-    pages: Dict[str, List[str]]
+    name: str  # of the section, and of the files
+    title: str  # above it, on a page that does not have it yet
+    pages: Dict[str, List[str]]  # by page, the lines of the section
+    # Of a row in the file of figures: its name; None: there is none but all together.
     group: Optional[Callable[[Row], str]] = None
 
 
@@ -80,24 +69,14 @@ def rows_path(folder: Path, name: str) -> Path:
 
 
 def write(folder: Path, section: Section, rows: Sequence[Row], command: str) -> List[Path]:
-    """Write a section of the pages, and the figures; return the names of the files.
-
-    Args:
-        folder: exists.
-        section: see there.
-        rows: that it is about.
-        command: that the pages say it was written by.
-
-    Raises:
-        OSError: a file cannot be written.
-    """
+    """Write a section of the pages, and the figures; return the names of the files."""
     figures = folder / f'{section.name}.csv'
     kinds = sorted({row.fault.partition(':')[0] for row in rows} - {NORMAL})
     table = [{**{name: getattr(of_group[0].subject, name) for name in
                  ('part', 'learning', 'system', 'change', 'budget')},
               'of': group, **columns(of_group, kinds)}
              for group, of_group in _groups(section, rows)]
-    row_files.save_table(figures, table, list(table[0]))
+    save_table(str(figures), list(table[0]), [list(each.values()) for each in table])
     for page, lines in section.pages.items():
         text = '\n'.join([written_by(command), '', *lines])
         write_section(folder / page, section.name, text, section.title)
@@ -115,13 +94,8 @@ def _groups(section: Section, rows: Sequence[Row]) -> List[Tuple[str, List[Row]]
 
 @dataclass(frozen=True)
 class Written:
-    """A page, or a section of one, that a command wrote.
-
-    Args:
-        page: as a path from the folder of all pages.
-        command: that wrote it.
-        method: version of the method that was measured; None: of before versions were told.
-    """
+    """A page, or a section of one: its path from the folder of all, the command that wrote it, and
+    the version of the method that was measured; None: of before versions were told."""
 
     page: str
     command: str
@@ -134,12 +108,7 @@ class Written:
 
 
 def written_by(command: str, date: str = '') -> str:
-    """Return the line by which a page says where it comes from.
-
-    Args:
-        command: that writes it.
-        date: of the measurement; empty: it does not matter, as in simulated time.
-    """
+    """Return the line by which a page says what wrote it, and when, if that matters."""
     return (f'Written by `{command}`' + (f' on {date}' if date else '')
             + f', method {METHOD}; do not edit.')
 
@@ -151,12 +120,7 @@ def written(text: str, page: str = '') -> List[Written]:
 
 
 def find(docs: Path) -> List[Written]:
-    """Return all that commands wrote in a folder and those below it.
-
-    Raises:
-        OSError: a page cannot be read.
-        ValueError: a file of numbers is no JSON.
-    """
+    """Return all that commands wrote in a folder and those below it."""
     found = [each for path in sorted(docs.rglob('*.md'))
              for each in written(path.read_text(encoding='utf-8'), str(path.relative_to(docs)))]
     return found + [Written(str(path.relative_to(docs)), f'scripts/benchmark {path.stem}',
@@ -168,8 +132,7 @@ def check(docs: Path) -> List[str]:
     """Return a line for each page.
 
     Raises:
-        OSError: a page cannot be read.
-        ValueError: no command wrote a page there, or a file of numbers is no JSON.
+        ValueError: no command wrote a page there.
     """
     found = find(docs)
     if not found:

@@ -15,18 +15,17 @@ OUTSIDE, and by more than the one event that may fall to either side of the end 
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Dict, Generic, List, NamedTuple, Optional, Sequence, Set, Tuple, TypeVar
+from typing import Any, Dict, Hashable, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, EventType
 from self_awareness.stamps import SECOND_NS
+from self_awareness_evaluation.records import WindowedEvents, stamps_by
 from self_awareness_evaluation.systems import (FALSE_POSITIVE_RATE, Judged, common_threshold,
-                                               persistent, required, settling)
-from self_awareness_evaluation.windowed_events import WindowedEvents, stamps_by
+                                               persistent, settling)
 
-TOLERANCE = 0.1
-"""Default of FrequencyStatusParam."""
+TOLERANCE = 0.1  # default of FrequencyStatusParam
 
 SPAN = 5 * SECOND_NS
 """Length of the time over which messages are counted [ns]: 5 updates, once a second."""
@@ -34,63 +33,55 @@ SPAN = 5 * SECOND_NS
 LONGER = 1.25
 """Times the longest gap ever seen, from where on an event type is silent for too long."""
 
-OUTSIDE = 0.25
-"""Share by which the events of the last 5 s may be fewer, or more, than ever seen."""
-
+OUTSIDE = 0.25  # share by which the events of the last 5 s may be fewer, or more, than ever seen
 _PERIODIC = 0.2  # largest coefficient of variation of the gaps of a periodic topic
 _FEWEST_GAPS = 10
 _NEVER = np.empty(0, dtype=np.int64)
 
-_Key = TypeVar('_Key', str, EventType)
-_Bounds = TypeVar('_Bounds')
 
-
-class Peer(Generic[_Key, _Bounds]):
+class Peer:
     """A system whose windows score the largest deviation from bounds, negated; it blames whose is
     the largest. Persistence is that of all other systems.
-
-    Args:
-        threshold: None: chosen by the common rule; else its own, which stays.
-        rate: share of normal windows of that rule.
     """
 
-    name = ''
+    threshold = 0.0
+    expected_per_hour = None
 
-    def __init__(self, threshold: Optional[float] = None,
-                 rate: float = FALSE_POSITIVE_RATE) -> None:
-        self.bounds: Dict[_Key, _Bounds] = {}
+    def __init__(self) -> None:
+        self.bounds: Dict[Hashable, Any] = {}
         """By topic or event type; one without is not watched."""
-        self._own_threshold = self._threshold = threshold
-        self._rate = rate
+        self._sources: Dict[Hashable, Dict[str, None]] = {}
+        """By topic or event type, in the order of their coming."""
         self._last: Optional[Tuple[WindowedEvents, np.ndarray]] = None
+
+    @staticmethod
+    def key(event_type: EventType) -> Hashable:
+        """Return what has bounds: the topic, or the event type itself."""
+        raise NotImplementedError
+
+    @staticmethod
+    def deviation(bounds: Any, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
+        """Return the deviation at some ends of windows; 0 within the bounds."""
+        raise NotImplementedError
 
     @property
     def watched(self) -> Set[str]:
         """The sources of all that has bounds."""
-        return {source for key in self.bounds for source in self._sources_of(key)}
-
-    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Choose the threshold by the common rule, unless the system has its own."""
-        if self._own_threshold is None:
-            self._threshold = common_threshold(
-                [self.scores(recording)[~settling(recording)] for recording in recordings],
-                self._rate)
+        return {source for key in self.bounds for source in self._sources[key]}
 
     def judge(self, recording: WindowedEvents) -> Judged:
-        """Judge a recording.
-
-        Raises:
-            ValueError: the system is not calibrated.
-        """
-        threshold = required(self._threshold, self.name, 'calibrate')
-        start, score = recording.starts(), self.scores(recording)
-        abnormal, unsettled = score < threshold, settling(recording)
+        """Judge a recording."""
+        start, unsettled = recording.starts(), settling(recording)
         alarms = []
-        for alarm in persistent(start, abnormal & ~unsettled):
+        for alarm in persistent(start, self.abnormal(recording) & ~unsettled):
             suspects = self._suspects(recording,
                                       int((alarm.start - start[0]) // DEFAULT_WINDOW) - 1)
             alarms.append(replace(alarm, suspects=suspects, culprit=(suspects or [''])[0]))
-        return Judged(start, abnormal, score, unsettled, alarms, threshold)
+        return Judged(start, unsettled, alarms)
+
+    def abnormal(self, recording: WindowedEvents) -> np.ndarray:
+        """Return which windows are abnormal."""
+        return self.scores(recording) < self.threshold
 
     def scores(self, recording: WindowedEvents) -> np.ndarray:
         """Return the scores of the windows."""
@@ -102,29 +93,23 @@ class Peer(Generic[_Key, _Bounds]):
         deviations, keys = self._deviations(recording)[:, window], list(self.bounds)
         return list(dict.fromkeys(source for row in np.argsort(-deviations, kind='stable')
                                   if deviations[row] > 0
-                                  for source in self._sources_of(keys[row])))
+                                  for source in self._sources[keys[row]]))
 
     def _deviations(self, recording: WindowedEvents) -> np.ndarray:
         """Return the deviations, [key, window]."""
         # Every alarm of a recording asks for them again.
         if self._last is None or self._last[0] is not recording:
-            ends, stamps = recording.starts() + DEFAULT_WINDOW, self._stamps(recording)
-            deviations = [self._deviation(bounds, stamps.get(key, _NEVER), ends)
+            ends, stamps = recording.starts() + DEFAULT_WINDOW, stamps_by(recording, self.key)
+            deviations = [self.deviation(bounds, stamps.get(key, _NEVER), ends)
                           for key, bounds in self.bounds.items()]
             self._last = recording, np.array(deviations).reshape(len(deviations), len(ends))
         return self._last[1]
 
-    def _stamps(self, recording: WindowedEvents) -> Dict[_Key, np.ndarray]:
-        """Return the stamps of the events by topic or event type [ns]."""
-        raise NotImplementedError
-
-    def _deviation(self, bounds: _Bounds, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
-        """Return the deviation at some ends of windows; 0 within the bounds."""
-        raise NotImplementedError
-
-    def _sources_of(self, key: _Key) -> List[str]:
-        """Return the sources to blame."""
-        raise NotImplementedError
+    def learned(self, recording: WindowedEvents) -> Dict[Hashable, np.ndarray]:
+        """Return the stamps of the events by topic or event type [ns]; note their sources."""
+        for event_type in recording.event_types:
+            self._sources.setdefault(self.key(event_type), {})[event_type.source] = None
+        return stamps_by(recording, self.key)
 
 
 class Bounds(NamedTuple):
@@ -134,7 +119,7 @@ class Bounds(NamedTuple):
     most: float
 
 
-class FrequencyMonitor(Peer[str, Bounds]):
+class FrequencyMonitor(Peer):
     """FrequencyStatus as a developer sets it up: minimum and maximum are the nominal frequency.
 
     The nominal frequency is the mean of the training recordings. Topics with fewer than
@@ -142,20 +127,23 @@ class FrequencyMonitor(Peer[str, Bounds]):
     it.
     """
 
-    name = 'frequency'
+    threshold = -TOLERANCE
 
-    def __init__(self, threshold: Optional[float] = -TOLERANCE,
-                 rate: float = FALSE_POSITIVE_RATE) -> None:
-        super().__init__(threshold, rate)
-        self._sources: Dict[str, Dict[str, None]] = {}  # by topic, in the order of their coming
+    @staticmethod
+    def key(event_type: EventType) -> str:
+        """See Peer."""
+        return event_type.scope
+
+    @staticmethod
+    def deviation(bounds: Bounds, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
+        """See Peer."""
+        count = messages_in_span(stamps, ends)
+        return np.maximum((bounds.fewest - count) / bounds.fewest,
+                          (count - bounds.most) / bounds.most).clip(0.0)
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the periodic topics and their bounds."""
-        self.bounds, self._sources = {}, {}
-        for recording in recordings:
-            for event_type in recording.event_types:
-                self._sources.setdefault(event_type.scope, {})[event_type.source] = None
-        by_topic = [self._stamps(recording) for recording in recordings]
+        by_topic = [self.learned(recording) for recording in recordings]
         for topic in self._sources:
             stamps = [of_recording.get(topic, _NEVER) for of_recording in by_topic]
             gaps = np.concatenate([np.diff(part) for part in stamps])
@@ -164,21 +152,13 @@ class FrequencyMonitor(Peer[str, Bounds]):
                 if bounds.fewest > 0:
                     self.bounds[topic] = bounds
 
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
+        """Do nothing: the tolerance is given."""
+
     def _bounds_of(self, recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray],
                    gaps: np.ndarray) -> Bounds:
         nominal = SPAN / gaps.mean()
         return Bounds(nominal, nominal) if nominal >= 2 / TOLERANCE else Bounds(0, 0)
-
-    def _stamps(self, recording: WindowedEvents) -> Dict[str, np.ndarray]:
-        return stamps_by(recording, lambda event_type: event_type.scope)
-
-    def _deviation(self, bounds: Bounds, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
-        fewest, most = bounds
-        count = messages_in_span(stamps, ends)
-        return np.maximum((fewest - count) / fewest, (count - most) / most).clip(0.0)
-
-    def _sources_of(self, key: str) -> List[str]:
-        return list(self._sources[key])
 
 
 class LearnedFrequencyMonitor(FrequencyMonitor):
@@ -187,17 +167,29 @@ class LearnedFrequencyMonitor(FrequencyMonitor):
     They are wider by one message, which may fall to either side of the end of SPAN by its phase
     alone: without that, the slowest topics decide on the threshold, and the fast ones are found a
     second later. Periodic topics of any frequency are watched, if the fewest are 2 or more.
+
+    Args:
+        rate: share of the normal windows of the calibration that are below the threshold.
     """
 
-    name = 'frequency_learned'
-
     def __init__(self, rate: float = FALSE_POSITIVE_RATE) -> None:
-        super().__init__(None, rate)
+        super().__init__()
+        self._rate = rate
+
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
+        """Choose the threshold by the common rule."""
+        self.threshold = common_threshold(
+            [self.scores(recording)[~settling(recording)] for recording in recordings],
+            self._rate)
 
     def _bounds_of(self, recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray],
                    gaps: np.ndarray) -> Bounds:
-        counts = np.concatenate([_settled_counts(recording, part)
-                                 for recording, part in zip(recordings, stamps)])
+        found = []
+        for recording, part in zip(recordings, stamps):
+            ends = recording.starts() + DEFAULT_WINDOW
+            full = (ends - SPAN >= recording.stamps[0]) & (ends <= recording.end)
+            found.append(messages_in_span(part, ends[full]))
+        counts = np.concatenate(found)
         return Bounds(counts.min() - 1, counts.max() + 1) if len(counts) else Bounds(0, 0)
 
 
@@ -228,18 +220,26 @@ class GapBounds(NamedTuple):
         return np.fmax(silent, np.fmax(few, many))
 
 
-class GapMonitor(Peer[EventType, GapBounds]):
+class GapMonitor(Peer):
     """The bounds of every event type that came at least twice in a recording; what lies beyond
     them is abnormal, and the calibration widens them."""
 
-    name = 'gaps'
+    @staticmethod
+    def key(event_type: EventType) -> EventType:
+        """See Peer."""
+        return event_type
 
-    def __init__(self) -> None:
-        super().__init__(threshold=0.0)
+    @staticmethod
+    def deviation(bounds: GapBounds, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
+        """See Peer."""
+        if not len(stamps):
+            return np.zeros(len(ends))
+        number = np.searchsorted(stamps, ends)  # of those before
+        ages = np.where(number > 0, ends - stamps[number - 1], np.nan)
+        return bounds.deviation(ages, _counts(stamps, ends))
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the bounds."""
-        self.bounds = {}
         self.calibrate(recordings)
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
@@ -247,7 +247,7 @@ class GapMonitor(Peer[EventType, GapBounds]):
         self._last = None
         for recording in recordings:
             ends = recording.starts() + DEFAULT_WINDOW
-            for event_type, stamps in self._stamps(recording).items():
+            for event_type, stamps in self.learned(recording).items():
                 if len(stamps) < 2:
                     continue
                 counts = _counts(stamps, ends[ends <= recording.end])
@@ -258,29 +258,10 @@ class GapMonitor(Peer[EventType, GapBounds]):
                     min(known.fewest, counts.min(initial=np.inf)),
                     max(known.most, counts.max(initial=0.0)))
 
-    def _stamps(self, recording: WindowedEvents) -> Dict[EventType, np.ndarray]:
-        return stamps_by(recording, lambda event_type: event_type)
-
-    def _deviation(self, bounds: GapBounds, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
-        if not len(stamps):
-            return np.zeros(len(ends))
-        number = np.searchsorted(stamps, ends)  # of those before
-        ages = np.where(number > 0, ends - stamps[number - 1], np.nan)
-        return bounds.deviation(ages, _counts(stamps, ends))
-
-    def _sources_of(self, key: EventType) -> List[str]:
-        return [key.source]
-
 
 def messages_in_span(stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
     """Return how many stamps lie in [end - SPAN, end), for every end [ns]."""
     return np.searchsorted(stamps, ends) - np.searchsorted(stamps, ends - SPAN)
-
-
-def _settled_counts(recording: WindowedEvents, stamps: np.ndarray) -> np.ndarray:
-    ends = recording.starts() + DEFAULT_WINDOW
-    full = (ends - SPAN >= recording.stamps[0]) & (ends <= recording.end)
-    return messages_in_span(stamps, ends[full])
 
 
 def _counts(stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:

@@ -7,11 +7,8 @@ from typing import List, NamedTuple
 from self_awareness_evaluation.pages import RESEARCH
 from self_awareness_evaluation.sections import families, own_robot
 
-SECTION = 'measured'
-"""Name of the README's section that holds them."""
-
-PAGE = f'evaluation/{RESEARCH}'
-"""Where they are, from the folder of all pages."""
+SECTION = 'measured'  # name of the README's section that holds them
+PAGE = f'evaluation/{RESEARCH}'  # where they are, from the folder of all pages
 
 
 class Number(NamedTuple):
@@ -33,23 +30,14 @@ NUMBERS = [
 
 
 def section(docs: Path) -> str:
-    """Return the README's section: what was measured, as the page says it.
-
-    Raises:
-        OSError: the page cannot be read.
-        ValueError: it has no such table, row or column; names them.
-    """
+    """Return the README's section: what was measured, as the page says it."""
     page = (docs / PAGE).read_text(encoding='utf-8')
     return '\n'.join(['| what | runs with an alarm, median time to it |', '|---|---|',
                       *(f'| {each.what} | {cell(page, each)} |' for each in NUMBERS)])
 
 
 def cell(page: str, number: Number) -> str:
-    """Return a cell of the first table below a heading of a page.
-
-    Raises:
-        ValueError: the page has no such table, row or column; names them.
-    """
+    """Return a cell of the first table below a heading of a page; raise ValueError without one."""
     _, found, below = page.partition(f'\n## {number.heading}\n')
     if not found:
         raise ValueError(f'{PAGE}: no heading {number.heading!r}')

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import List, Optional, Sequence, Tuple
+from typing import Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -20,86 +20,67 @@ HOUR_S = 3600.0
 
 @dataclass(frozen=True)
 class Subject:
-    """Who judges, and whom.
+    """Who judges, and whom."""
 
-    Args:
-        part: where the record comes from, as Robot has it.
-        robot: with its seed; of a real one, what the recording is called.
-        learning: what was learned from, in short.
-        system: its name.
-        change: what was changed of the method; empty: nothing.
-        budget: false alarms an hour that its limits allow; None: the usual ones, or it has none.
-    """
-
-    part: str
-    robot: str
-    learning: str
-    system: str
-    change: str = ''
+    part: str  # where the record comes from: FAMILIES, OWN or REAL
+    robot: str  # with its seed; of a real one, what the recording is called
+    learning: str  # what was learned from, in short
+    system: str  # its name
+    change: str = ''  # what was changed of the method; empty: nothing
+    # False alarms an hour that its limits allow; None: the usual ones, or it has none.
     budget: Optional[float] = None
+
+    @property
+    def family(self) -> str:
+        """The robot without its seed."""
+        return self.robot if self.part == REAL else self.robot.rpartition(' ')[0]
 
 
 @dataclass(frozen=True)
 class Row:
-    """A system on a record. Times are from the onset of the fault [s].
+    """A system on a record. Times are from the onset of the fault [s]."""
 
-    Args:
-        subject: see there.
-        fault: NORMAL, or the kind of the fault.
-        source: the guilty components; empty: no single one is guilty.
-        hours: of normal operation, settled: all of it, or what was before the onset [h].
-        alarms: raised in it, all of them false.
-        standing_hours: for how long an alarm stood in it [h].
-        warnings: times that a suspicion or an alarm began in it.
-        evidence: what raised each alarm in it, in the system's words.
-        suspicions: the same of what became no alarm, of a record without a fault.
-        expected: false alarms an hour that the calibration told; None: it did not say.
-        watched: how many components the system watches, of a record without a fault; of one with
-            a fault, how many of the guilty ones. None: it judges all together, or is not known.
-        components: how many there are; None: not known.
-        stood_before: whether an alarm stood at the onset, a false one; only when it has cleared
-            can another one be raised.
-        latency_s: to the first alarm raised after the onset; None: none was.
-        noticed_s: to the first suspicion or alarm; None: none, or one stood at the onset.
-        first, among_three: whether that alarm names a guilty one first, or among the first three;
-            None: no such alarm, nobody is guilty, or the system names nobody.
-        bystanders: how many it names that have nothing to do with the fault; None: no such alarm,
-            or who is involved is not known.
-        level: of what stands when the fault ends, ALARM or SUSPICION; empty: nothing does.
-        culprit, kind: who is to blame by then, and what is wrong; empty: nobody, or not known.
-        excused: whether that is no node's fault (systems.EXCUSES).
-        opened_s, closed_s: begin and end of the incident that it belongs to, or of the last one
-            that began in the fault; None: there is none, or it is not over.
-        after: alarms for who was back already, all of them false; None: the fault lasts.
-        refused: why nothing could be judged; empty: it was.
-    """
-
-    subject: Subject
-    fault: str
-    source: str = ''
-    hours: float = 0.0
-    alarms: int = 0
-    standing_hours: float = 0.0
-    warnings: int = 0
-    evidence: Tuple[str, ...] = ()
+    subject: Subject  # see there
+    fault: str  # NORMAL, or the kind of the fault
+    source: str = ''  # the guilty components; empty: no single one is guilty
+    hours: float = 0.0  # of normal operation, settled: all of it, or what was before the onset [h]
+    alarms: int = 0  # raised in it, all of them false
+    standing_hours: float = 0.0  # for how long an alarm stood in it [h]
+    warnings: int = 0  # times that a suspicion or an alarm began in it
+    evidence: Tuple[str, ...] = ()  # what raised each alarm in it, in the system's words
+    # The same of what became no alarm, of a record without a fault.
     suspicions: Tuple[str, ...] = ()
+    # False alarms an hour that the calibration told; None: it did not say.
     expected: Optional[float] = None
+    # How many components the system watches, of a record without a fault; of one with a fault, how
+    # many of the guilty ones. None: it judges all together, or is not known.
     watched: Optional[int] = None
-    components: Optional[int] = None
+    components: Optional[int] = None  # how many there are; None: not known
+    # Whether an alarm stood at the onset, a false one; only when it has cleared can another one be
+    # raised.
     stood_before: bool = False
-    latency_s: Optional[float] = None
+    latency_s: Optional[float] = None  # to the first alarm raised after the onset; None: none was
+    # To the first suspicion or alarm; None: none, or one stood at the onset.
     noticed_s: Optional[float] = None
+    # Whether that alarm names a guilty one first, or among the first three; None: no such alarm,
+    # nobody is guilty, or the system names nobody.
     first: Optional[bool] = None
     among_three: Optional[bool] = None
+    # How many it names that have nothing to do with the fault; None: no such alarm, or who is
+    # involved is not known.
     bystanders: Optional[int] = None
-    level: str = ''
+    level: str = ''  # of what stands when the fault ends, ALARM or SUSPICION; empty: nothing does
+    # Who is to blame by then, and what is wrong; empty: nobody, or not known.
     culprit: str = ''
     kind: str = ''
-    excused: bool = False
+    excused: bool = False  # whether that is no node's fault (systems.EXCUSES)
+    # Begin and end of the incident that it belongs to, or of the last one that began in the fault;
+    # None: there is none, or it is not over.
     opened_s: Optional[float] = None
     closed_s: Optional[float] = None
+    # Alarms for who was back already, all of them false; None: the fault lasts.
     after: Optional[int] = None
-    refused: str = ''
+    refused: str = ''  # why nothing could be judged; empty: it was
 
     @property
     def right_at_end(self) -> Optional[bool]:
@@ -125,7 +106,11 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged,
     row = _quiet(Row(subject, record.kind, record.source, watched=watched), judged,
                  judged.start + DEFAULT_WINDOW <= onset,
                  [alarm for alarm in judged.alarms if alarm.start <= onset])
-    alarms, after = alarms_until_return(judged.alarms, record.back)
+    alarms, after = judged.alarms, None
+    if record.back is not None:
+        end = record.back + nanoseconds(AFTERMATH_S)
+        alarms = [each for each in judged.alarms if each.start <= end]
+        after = len(judged.alarms) - len(alarms)
     alarm = first_alarm(alarms, onset)
     row = replace(
         row, after=after,
@@ -136,49 +121,24 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged,
     return at_end(row, [*judged.alarms, *judged.suspicions], onset, record.ends)
 
 
-def beginnings(noticed: np.ndarray) -> int:
-    """Return how often something begins, by whether it is there in each window."""
-    return int((np.diff(noticed.astype(np.int8), prepend=0) == 1).sum())
-
-
 def first_alarm(alarms: Sequence[SystemAlarm], onset: int) -> Optional[SystemAlarm]:
     """Return the first alarm that is raised after the onset [ns]."""
     return next((alarm for alarm in alarms if alarm.start > onset), None)
 
 
-def alarms_until_return(alarms: List[SystemAlarm],
-                        back: Optional[int]) -> Tuple[List[SystemAlarm], Optional[int]]:
-    """Return the alarms that may belong to a fault, until AFTERMATH_S after it is over, and the
-    number of those that come later.
-
-    Args:
-        alarms: of the record.
-        back: when the fault is over [ns]; None: it lasts, and all alarms may belong to it.
-    """
-    if back is None:
-        return alarms, None
-    end = back + nanoseconds(AFTERMATH_S)
-    belong = [alarm for alarm in alarms if alarm.start <= end]
-    return belong, len(alarms) - len(belong)
-
-
 def _quiet(row: Row, judged: Judged, early: np.ndarray, alarms: Sequence[SystemAlarm]) -> Row:
     """Return the row with what was judged in some windows of normal operation."""
     counted = early & ~judged.settling
+    begins = np.diff((judged.noticed & early).astype(np.int8), prepend=0) == 1
     return replace(row, hours=_hours(counted), alarms=len(alarms),
                    standing_hours=_hours(judged.standing & counted),
-                   warnings=beginnings(judged.noticed & early),
+                   warnings=int(begins.sum()),
                    evidence=tuple(alarm.evidence for alarm in alarms))
 
 
 def at_end(row: Row, found: Sequence[SystemAlarm], onset: int, end: int) -> Row:
-    """Return the row with what is said when the fault ends; an alarm goes before a suspicion.
-
-    Args:
-        row: of a fault.
-        found: alarms, and then suspicions.
-        onset, end: of the fault [ns].
-    """
+    """Return the row of a fault with what is said when it ends; found: alarms, then suspicions, of
+    which an alarm goes first."""
     standing = [each for each in found if each.stands_at(end)]
     if standing:
         last = standing[0]

@@ -10,21 +10,20 @@ import hashlib
 import os
 import random
 import tempfile
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness import EncodingRules, read_events
 from self_awareness.stamps import nanoseconds
-from self_awareness_evaluation.records import FaultRecord
-from self_awareness_evaluation.windowed_events import Subscriptions, WindowedEvents
+from self_awareness_evaluation.records import (NORMAL, FaultRecord, Learning, Robot,
+                                               Subscriptions, WindowedEvents)
 from self_awareness_follow_me.effects import Change
 from self_awareness_follow_me.faults import effect_of
-from self_awareness_follow_me.scenario import Scenario
+from self_awareness_follow_me.scenario import Scenario, load_scenario
 from self_awareness_follow_me.simulation import START_S, InducedFault, simulate
 
-RECORD_S = 100.0
-"""Length of the records of training and of faults [s], as in the paper."""
+RECORD_S = 100.0  # length of the records of training and of faults [s], as in the paper
 
 NORMAL_TEST_S = 600.0
 """Length of the record of normal operation that false alarms are counted on [s]."""
@@ -51,7 +50,6 @@ _HOUR_S = 3600.0
 _HOURS = 1 << 15  # that a record may begin at
 _ONSET_S = 50.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
-
 _IRREGULAR = ('speech_recognition', 'dialog', 'anchoring')  # they send when something happens
 
 
@@ -63,17 +61,40 @@ def default_faults(scenario: Scenario) -> List[str]:
             'double:gaze_control', 'order', 'unknown', *WITHIN_S, *crashes]
 
 
+def own(seed: int, faults: Sequence[str]) -> Robot:
+    """Return the robot of a seed; faults: kinds of simulation.InducedFault."""
+    scenario = load_scenario()
+
+    def normal(name: str, length_s: float) -> WindowedEvents:
+        return normal_record(scenario, seed, name, length_s)
+
+    return Robot(
+        {f'/{spec.name}' for spec in scenario.components}, graph_of(scenario),
+        lambda learning: [normal(name, learning.training_s) for name in TRAINING_NAMES],
+        lambda learning: [normal(CALIBRATION_NAME, learning.calibration_s)],
+        lambda: [normal(NORMAL, NORMAL_TEST_S)],
+        lambda: (fault_record(scenario, seed, kind) for kind in faults))
+
+
+def own_learning(calibration_s: float) -> Learning:
+    """Return what is learned from it: as in the paper, but for the calibration [s]."""
+    return Learning(len(TRAINING_NAMES), RECORD_S, 1, calibration_s)
+
+
+def graph_of(scenario: Scenario) -> Set[Tuple[str, str, str]]:
+    """Return publisher, topic and subscriber of all that components hear of each other."""
+    return {(f'/{publisher.name}', f'/{topic}', f'/{listener.name}')
+            for publisher in scenario.components for listener in scenario.components
+            for topic in set(publisher.outputs()) & set(listener.inputs())}
+
+
 def normal_record(scenario: Scenario, seed: int, name: str, duration_s: float) -> WindowedEvents:
     """Return a record of normal operation; its name decides, with the seed, what is random."""
     return _recorded(scenario, _derived_seed(seed, name), duration_s, None)
 
 
 def fault_record(scenario: Scenario, seed: int, kind: str) -> FaultRecord:
-    """Return a record with a fault; it is longer than RECORD_S where the fault takes so long.
-
-    Raises:
-        ValueError: no such fault.
-    """
+    """Return a record with a fault; it is longer than RECORD_S where the fault takes so long."""
     spread = random.Random(f'{seed}/{kind}/onset').uniform(0.0, _ONSET_SPREAD_S)
     fault = InducedFault(kind, _ONSET_S + spread)
     derived = _derived_seed(seed, kind)

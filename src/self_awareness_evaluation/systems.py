@@ -2,20 +2,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Optional, Protocol, Sequence, Set, Tuple, TypeVar
+from typing import List, Optional, Protocol, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, Persistence, Roc
-from self_awareness_evaluation.windowed_events import WindowedEvents
+from self_awareness_evaluation.records import WindowedEvents
 
-_Value = TypeVar('_Value')
-
-ALARM, SUSPICION = 'ERROR', 'WARN'
-"""Levels, as diagnostics call them."""
-
-EXCUSES = ('busy machine', 'all silent', 'new mode')
-"""Kinds of alarms that are no node's fault."""
+ALARM, SUSPICION = 'ERROR', 'WARN'  # levels, as diagnostics call them
+EXCUSES = ('busy machine', 'all silent', 'new mode')  # kinds of alarms that are no node's fault
 
 FALSE_POSITIVE_RATE = 0.001
 """The share of normal windows of the calibration that may score below the threshold."""
@@ -23,30 +18,20 @@ FALSE_POSITIVE_RATE = 0.001
 
 @dataclass(frozen=True)
 class SystemAlarm:
-    """A stretch of time in which the alarm stood.
+    """A stretch of time in which the alarm stood."""
 
-    Args:
-        start: end of the window that raised it [ns].
-        end: end of the window that cleared it, or of the last one [ns].
-        cleared: False if it stood to the end of the recording.
-        suspects: sources that the alarm is blamed on when it is raised, best first, each once;
-            None if the system names no suspects.
-        evidence: what raised it, in words; empty if the system does not say.
-        level: ALARM or SUSPICION.
-        culprit: who is to blame when it ends; empty: nobody, or the system does not say.
-        kind: what is wrong by then; empty if the system does not say.
-        incident: begin and end [ns] of the incident that it belongs to, and whether that is over;
-            None: it is one of its own.
-    """
-
-    start: int
-    end: int
-    cleared: bool
+    start: int  # end of the window that raised it [ns]
+    end: int  # end of the window that cleared it, or of the last one [ns]
+    cleared: bool  # False if it stood to the end of the recording
+    # Sources that the alarm is blamed on when it is raised, best first, each once; None if the
+    # system names no suspects.
     suspects: Optional[List[str]]
-    evidence: str = ''
-    level: str = ALARM
-    culprit: str = ''
-    kind: str = ''
+    evidence: str = ''  # what raised it, in words; empty if the system does not say
+    level: str = ALARM  # ALARM or SUSPICION
+    culprit: str = ''  # who is to blame when it ends; empty: nobody, or the system does not say
+    kind: str = ''  # what is wrong by then; empty if the system does not say
+    # Begin and end [ns] of the incident that it belongs to, and whether that is over; None: it is
+    # one of its own.
     incident: Optional[Tuple[int, int, bool]] = None
 
     def stands_at(self, time: int) -> bool:
@@ -56,27 +41,14 @@ class SystemAlarm:
 
 @dataclass(frozen=True)
 class Judged:
-    """What a system says of a recording; arrays with one entry a window.
+    """What a system says of a recording; arrays with one entry a window."""
 
-    Args:
-        start: of the windows [ns].
-        abnormal: the bare verdict, also while settling.
-        score: finite, low is abnormal.
-        settling: whether it is too early for an alarm.
-        alarms: after persistence.
-        threshold: a score below it is abnormal.
-        suspicion: whether there is a suspicion, which is no alarm; None: the system knows none.
-        suspicions: the same as stretches of time, with who is suspected.
-    """
-
-    start: np.ndarray
-    abnormal: np.ndarray
-    score: np.ndarray
-    settling: np.ndarray
-    alarms: List[SystemAlarm]
-    threshold: float
+    start: np.ndarray  # of the windows [ns]
+    settling: np.ndarray  # whether it is too early for an alarm
+    alarms: List[SystemAlarm]  # after persistence
+    # Whether there is a suspicion, which is no alarm; None: the system knows none.
     suspicion: Optional[np.ndarray] = None
-    suspicions: Sequence[SystemAlarm] = ()
+    suspicions: Sequence[SystemAlarm] = ()  # the same as stretches of time, with who is suspected
 
     @property
     def noticed(self) -> np.ndarray:
@@ -94,9 +66,7 @@ class Judged:
 
 
 class System(Protocol):
-    """A detector of faults."""
-
-    name: str
+    """A detector of faults; it learns, is calibrated, and then judges."""
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Learn from normal operation."""
@@ -109,24 +79,11 @@ class System(Protocol):
 
     @property
     def watched(self) -> Optional[Set[str]]:
-        """The components whose death it would find, once it has learned and is calibrated; None:
-        it judges all together."""
+        """The components whose death it would find; None: it judges all together."""
 
-
-def required(value: Optional[_Value], name: str, step: str) -> _Value:
-    """Return what a step of a system has left.
-
-    Args:
-        value: that; None: the step was not taken.
-        name: of the system.
-        step: what the step is called.
-
-    Raises:
-        ValueError: the step was not taken.
-    """
-    if value is None:
-        raise ValueError(f'{name}: {step} first')
-    return value
+    @property
+    def expected_per_hour(self) -> Optional[float]:
+        """The false alarms an hour that the calibration expects; None: it does not say."""
 
 
 def common_threshold(scores: Sequence[np.ndarray], rate: float) -> float:
@@ -141,12 +98,8 @@ def settling(recording: WindowedEvents) -> np.ndarray:
 
 
 def persistent(start: np.ndarray, abnormal: np.ndarray) -> List[SystemAlarm]:
-    """Return the alarms of windows by the detector's own persistence, without suspects.
-
-    Args:
-        start: of the windows [ns].
-        abnormal: those that count, one a window.
-    """
+    """Return the alarms of windows by the detector's own persistence, without suspects; abnormal:
+    those that count."""
     persistence = Persistence(DetectorParameters())
     alarms: List[SystemAlarm] = []
     raised_at: Optional[int] = None

@@ -5,14 +5,11 @@ import math
 from dataclasses import dataclass
 from typing import Dict, List, Mapping, Sequence, Tuple
 
-from self_awareness_evaluation.figures import SOON_S, Found, Quiet, of_fault
+from self_awareness_evaluation.figures import SOON_S, Found, Quiet, of_fault, part_of
 from self_awareness_evaluation.rows import Row
 
-NONE = '–'
-"""What a table says where there is nothing to tell."""
-
-LEAST_LATENCY_S = 0.05
-"""Medians that differ by less are told as the same [s]."""
+NONE = '–'  # what a table says where there is nothing to tell
+LEAST_LATENCY_S = 0.05  # medians that differ by less are told as the same [s]
 
 OTHER = 'other faults'
 
@@ -50,48 +47,29 @@ def share(found: Found) -> str:
     return f'{percent(found.share())}, {seconds(found.median_s)}' if found.within() else NONE
 
 
-def shares(found: Found, within_s: Sequence[float]) -> str:
-    """Return the shares that were found in some times each."""
-    if not found.records:
-        return NONE
-    return f'{" / ".join(f"{100.0 * found.share(each):.0f}" for each in within_s)} %'
+def part(of: Tuple[int, int]) -> str:
+    """Return the first of two counts as a share of the second."""
+    return percent(part_of(of))
 
 
-def counts(found: Found, *within_s: float) -> str:
-    """Return how many were found, or in these times each, and the median latency."""
-    if not found.records:
-        return NONE
-    told = ' / '.join(str(found.within(within)) for within in within_s or (math.inf,))
-    median = f', {found.median_s:.2f} s' if math.isfinite(found.median_s) else ''
-    return f'{told} of {found.records}{median}'
-
-
-def part(of: Tuple[int, int], in_percent: bool = True) -> str:
-    """Return the first of two counts as a share of the second, or both of them."""
-    if not of[1]:
-        return NONE
-    return f'{100.0 * of[0] / of[1]:.3g} %' if in_percent else f'{of[0]} of {of[1]}'
+def of_all(counts: Tuple[int, int]) -> str:
+    """Return two counts of which the first is a part of the second."""
+    return f'{counts[0]} of {counts[1]}' if counts[1] else NONE
 
 
 def interval(found: Found) -> str:
     """Return the 95 % interval of the share that was found."""
-    low, high = found.interval()
+    low, high = found.interval
     return NONE if math.isnan(low) else f'{100.0 * low:.0f}–{100.0 * high:.0f} %'
 
 
 @dataclass(frozen=True)
 class Cell:
-    """A figure of rows that are compared with others.
+    """A figure of rows that are compared with others."""
 
-    Args:
-        text: in a table.
-        values: that are compared.
-        same_within: by how much each may differ and still be told as the same.
-    """
-
-    text: str
-    values: Tuple[float, ...]
-    same_within: Tuple[float, ...]
+    text: str  # in a table
+    values: Tuple[float, ...]  # that are compared
+    same_within: Tuple[float, ...]  # by how much each may differ and still be told as the same
 
     def differs(self, other: Cell) -> bool:
         """Return whether it is told as another one."""
@@ -113,13 +91,15 @@ def cells(rows: Sequence[Row], kinds: Mapping[str, Sequence[str]]) -> Dict[str, 
                        if not {row.fault, row.fault.partition(':')[0]} & set(known)]
     for title, of_title in by_title.items():
         each = Found.of(of_title)
-        found[title] = Cell(counts(each, SOON_S, math.inf),
-                            (each.within(SOON_S), each.within(), each.median_s),
-                            (0.0, 0.0, LEAST_LATENCY_S))
+        median = f', {seconds(each.median_s)}' if math.isfinite(each.median_s) else ''
+        found[title] = Cell(
+            f'{each.within(SOON_S)} / {each.within()} of {each.records}{median}'
+            if each.records else NONE,
+            (each.within(SOON_S), each.within(), each.median_s), (0.0, 0.0, LEAST_LATENCY_S))
     every = Found.of(of_fault(rows, ''))
     after, records = every.after
     found['alarms after a restart'] = Cell(f'{after} after {records}' if records else NONE,
                                            (after,), (0.0,))
     for title, named in (('guilty first', every.first), ('guilty at the end', every.at_end)):
-        found[title] = Cell(part(named, in_percent=False), (named[1] - named[0],), (0.0,))
+        found[title] = Cell(of_all(named), (named[1] - named[0],), (0.0,))
     return found

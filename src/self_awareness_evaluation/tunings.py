@@ -2,19 +2,16 @@
 from __future__ import annotations
 
 import argparse
-from typing import Sequence, Tuple
+from typing import Tuple
 
 from self_awareness import Tuning
 from self_awareness.commands import cli
-from self_awareness_evaluation.catalogue import EVIDENCE
 
 WITHOUT, BETWEEN = 'without ', '; '
 
-OFF = 'off'
-"""As a value: the one that switches the rule off."""
+OFF = 'off'  # as a value: the one that switches the rule off
 
-Change = Tuple[str, float]
-"""Name and value of a number."""
+Change = Tuple[str, float]  # name and value of a number
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -43,9 +40,6 @@ def tuning_of(change: str) -> Tuning:
 
     Args:
         change: `NAME=VALUE` and `without CHANNEL`, several with BETWEEN between; empty: none.
-
-    Raises:
-        ValueError: there is no such number or channel, or the value is out of its range.
     """
     tuning = Tuning()
     for each in change.split(BETWEEN) if change else []:
@@ -55,17 +49,6 @@ def tuning_of(change: str) -> Tuning:
             name, _, value = each.partition('=')
             tuning.set(name, float(value))
     return tuning
-
-
-def check_used(change: str, systems: Sequence[str]) -> None:
-    """Check that a method that was changed belongs to a system that is evaluated.
-
-    Raises:
-        ValueError: none of the systems judges by it.
-    """
-    if change and not set(EVIDENCE) & set(systems):
-        raise ValueError(f'--set, --without: they change {" and ".join(EVIDENCE)} only, and none '
-                         f'of them is evaluated; add one to --systems')
 
 
 @cli.checked

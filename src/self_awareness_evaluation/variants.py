@@ -3,14 +3,24 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import AbstractSet, Iterator, List, Optional, Sequence, Tuple
+from typing import AbstractSet, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from self_awareness import Tuning, TuningNumber
 from self_awareness.calibration import limits
-from self_awareness_evaluation import catalogue, tunings
-from self_awareness_evaluation.detectors import Evidence
+from self_awareness_evaluation import tunings
+from self_awareness_evaluation.detectors import Evidence, Paper
+from self_awareness_evaluation.peers import FrequencyMonitor, GapMonitor, LearnedFrequencyMonitor
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.systems import System
+
+EVIDENCE = ('evidence', 'evidence_no_graph')
+"""The evidence detector, with the graph of the robot and without."""
+
+_OTHERS: Dict[str, Callable[[], System]] = {
+    'paper': Paper, 'gaps': GapMonitor, 'frequency': FrequencyMonitor,
+    'frequency_learned': LearnedFrequencyMonitor}
+
+SYSTEMS = (*EVIDENCE, *_OTHERS)  # the names of all systems
 
 CHANNEL, RULE, NUMBER = 'channel', 'rule', 'number'
 """Kinds of changes: one is left out, one is switched off, one is halved or doubled."""
@@ -22,30 +32,21 @@ _HALF, _DOUBLE = 0.5, 2.0
 
 @dataclass(frozen=True)
 class Variant:
-    """A system, with what is changed of it.
+    """A system, with what is changed of it."""
 
-    Args:
-        system: one of catalogue.NAMES.
-        learning: what it learns from; None: the records say themselves.
-        change: of the method, as tunings.tuning_of() reads it; empty: none.
-        budget: false alarms an hour that limits are made for; None: the usual ones, or the system
-            has none.
-        faults: whether it judges records with a fault, too.
-        kind: of the change, one of KINDS; empty: there is none, or it was asked for.
-    """
-
-    system: str
-    learning: Optional[Learning] = None
-    change: str = ''
+    system: str  # one of SYSTEMS
+    learning: Optional[Learning] = None  # what it learns from; None: the records say themselves
+    change: str = ''  # of the method, as tunings.tuning_of() reads it; empty: none
+    # False alarms an hour that limits are made for; None: the usual ones, or the system has none.
     budget: Optional[float] = None
-    faults: bool = True
-    kind: str = ''
+    faults: bool = True  # whether it judges records with a fault, too
+    kind: str = ''  # of the change, one of KINDS; empty: there is none, or it was asked for
 
     def make(self, graph: AbstractSet[Tuple[str, str, str]]) -> System:
         """Return the system, new; graph: of the robot."""
-        if self.system not in catalogue.EVIDENCE:
-            return catalogue.make(self.system)
-        return Evidence(set(graph) if self.system == catalogue.EVIDENCE[0] else set(),
+        if self.system in _OTHERS:
+            return _OTHERS[self.system]()
+        return Evidence(set(graph) if self.system == EVIDENCE[0] else set(),
                         tuning=tunings.tuning_of(self.change),
                         budget=limits.BUDGET if self.budget is None else self.budget)
 
@@ -53,31 +54,21 @@ class Variant:
 def side_by_side(systems: Sequence[str], learnings: Sequence[Optional[Learning]],
                  change: str = '', budgets: Sequence[Optional[float]] = (None,)
                  ) -> List[Variant]:
-    """Return systems as they are, but for one change of the method.
-
-    Args:
-        systems: names.
-        learnings: what each learns from, in turn.
-        change: see Variant.
-        budgets: that the evidence detector is told in turn; faults are judged with the first.
-    """
+    """Return systems as they are, but for one change of the method; learnings and budgets come in
+    turn, and faults are judged with the first budget."""
     found = []
     for learning in learnings:
         for name in systems:
             found += ([Variant(name, learning, change, budget, budget == budgets[0])
-                       for budget in budgets] if name in catalogue.EVIDENCE
+                       for budget in budgets] if name in EVIDENCE
                       else [Variant(name, learning)])
     return found
 
 
 def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Sequence[str]] = None,
                kinds: Sequence[str] = KINDS) -> List[Variant]:
-    """Return the method as it is, and with one thing changed after the other.
-
-    Args:
-        channels: that are left out in turn; None: all.
-        numbers: that are switched off, halved and doubled; None: all.
-        kinds: of changes, of KINDS.
+    """Return the method as it is, and with one thing changed after the other: channels left out,
+    numbers switched off, halved and doubled; None: all of them.
 
     Raises:
         ValueError: there is no such channel or number.
@@ -93,7 +84,7 @@ def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Seque
                 if number.off is not None and number.off != number.default]
     changes += [(NUMBER, tunings.told(number.name, value)) for number in known
                 for value in _values(number)]
-    method = catalogue.EVIDENCE[0]
+    method = EVIDENCE[0]
     return [Variant(method), *(Variant(method, change=change, kind=kind)
                                for kind, change in changes if kind in kinds)]
 

@@ -18,19 +18,13 @@ from self_awareness_follow_me.component_spec import (ComponentSpec, Hypothesis, 
 
 @dataclass(frozen=True)
 class Message:
-    """What is exchanged.
+    """What is exchanged."""
 
-    Args:
-        topic: where.
-        stamp: of the header (ns, by the clock of the host it is from).
-        value: what it says, as far as the scenario cares.
-        content: when it was made (ns): what the scenario does not care for follows from it. The
-            same: the same bytes. None: it is empty.
-    """
-
-    topic: str
-    stamp: int
-    value: Optional[Value] = None
+    topic: str  # where
+    stamp: int  # of the header (ns, by the clock of the host it is from)
+    value: Optional[Value] = None  # what it says, as far as the scenario cares
+    # When it was made (ns): what the scenario does not care for follows from it. The same: the
+    # same bytes. None: it is empty.
     content: Optional[int] = 0
 
 

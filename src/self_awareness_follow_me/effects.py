@@ -86,20 +86,14 @@ class Intruder(Effect):
 
 @dataclass(frozen=True)
 class Change(Effect):
-    """Some components live on, but do something else than they should.
+    """Some components live on, but do something else than they should."""
 
-    Args:
-        components: their names.
-        settings: properties of ComponentSpec that they have instead: their messages come late, and
-            so on.
-        other: how each task is done: halved, doubled or disordered; None: as ever.
-        more: tasks besides, of messages that were never seen before.
-    """
-
-    components: Tuple[str, ...]
+    components: Tuple[str, ...]  # their names
+    # Properties of ComponentSpec that they have instead: their messages come late, and so on.
     settings: Mapping[str, Any] = field(default_factory=dict)
+    # How each task is done: halved, doubled or disordered; None: as ever.
     other: Optional[Callable[[Task], Task]] = None
-    more: Tuple[Task, ...] = ()
+    more: Tuple[Task, ...] = ()  # tasks besides, of messages that were never seen before
 
     @property
     def culprits(self) -> Tuple[str, ...]:

@@ -62,16 +62,11 @@ def _needs_component(_: Scenario) -> Effect:
 
 @dataclass(frozen=True)
 class _Kind:
-    """What a kind of fault does.
+    """What a kind of fault does."""
 
-    Args:
-        text: for people.
-        alone: named without a component.
-        of: named with one; None: it cannot be.
-    """
-
-    text: str
-    alone: Callable[[Scenario], Effect] = _needs_component
+    text: str  # for people
+    alone: Callable[[Scenario], Effect] = _needs_component  # named without a component
+    # Named with one; None: it cannot be.
     of: Optional[Callable[[Scenario, ComponentSpec], Effect]] = None
 
     @property

@@ -25,7 +25,8 @@ _WITHIN_S = 5.0
 
 
 class InduceError(ValueError):
-    """A fault cannot be induced; the message says why and what to do."""
+    """A fault cannot be induced: no robot is running there, or a node is unknown to the master,
+    does not answer, or runs elsewhere. The message says what to do."""
 
 
 class _DeadError(InduceError):
@@ -50,11 +51,7 @@ def lasting(effect: Effect, kind: str, namespace: str = '', scenario: Optional[P
 
 
 def crash(effect: Crash, namespace: str = '') -> int:
-    """Kill the node of a component with SIGKILL and return its process id.
-
-    Raises:
-        InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
-    """
+    """Kill the node of a component with SIGKILL, and return its process id."""
     node = _resolved(namespace, effect.component)
     pid = process_id(node)
     _kill(node, pid)
@@ -62,11 +59,8 @@ def crash(effect: Crash, namespace: str = '') -> int:
 
 
 def silence(scenario: Scenario, namespace: str = '') -> Dict[str, int]:
-    """Kill the nodes of all components and return the process ids of those that were alive.
-
-    Raises:
-        InduceError: a node is unknown to the master or runs elsewhere, or all are dead already.
-    """
+    """Kill the nodes of all components and return the process ids of those that were alive; raise
+    InduceError if none was."""
     pids: Dict[str, int] = {}
     # All at the same time: finding them takes long, so all are found before the first is killed.
     for spec in scenario.components:
@@ -87,11 +81,7 @@ def _kill(node: str, pid: int) -> None:
 
 
 def process_id(node: str) -> int:
-    """Return the process id of a node by its full name.
-
-    Raises:
-        InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
-    """
+    """Return the process id of a node by its full name; or raise InduceError."""
     with _asking() as calls:
         address = calls.address(node)
         if not calls.is_here(address):
@@ -105,15 +95,8 @@ def process_id(node: str) -> int:
 
 @contextlib.contextmanager
 def disturbed(kind: str, namespace: str = '') -> Iterator[None]:
-    """Tell the components to misbehave for the time of a with statement.
-
-    Args:
-        kind: name of a fault that components know of: a clock that drifts, latency, and so on.
-        namespace: of the robot.
-
-    Raises:
-        InduceError: no robot is running there.
-    """
+    """Tell the components to misbehave for the time of a with statement; kind: name of a fault
+    that they know of, such as a clock that drifts."""
     parameter = _resolved(namespace, INDUCED_FAULT)
     _check_running(parameter)
     try:
@@ -126,11 +109,8 @@ def disturbed(kind: str, namespace: str = '') -> Iterator[None]:
 @contextlib.contextmanager
 def intruding(effect: Intruder, namespace: str = '', scenario: Optional[Path] = None
               ) -> Iterator[None]:
-    """Let a foreign node publish for the time of a with statement.
-
-    Raises:
-        InduceError: no robot is running there, or the node ended by itself.
-    """
+    """Let a foreign node publish for the time of a with statement; raise InduceError if it ended
+    by itself."""
     _check_running(_resolved(namespace, INDUCED_FAULT))
     command = ['rosrun', 'self_awareness', 'component', effect.spec.name]
     command += [] if scenario is None else ['--scenario', str(scenario)]

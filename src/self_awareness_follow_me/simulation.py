@@ -21,14 +21,13 @@ import rosbag
 from self_awareness.output_files import replacing
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_follow_me.component import Component, Message, Publish, Request, Wake
-from self_awareness_follow_me.component_spec import ComponentSpec, Value
+from self_awareness_follow_me.component_spec import ComponentSpec
 from self_awareness_follow_me.effects import Induced, Intruder
 from self_awareness_follow_me.faults import check_form, effect_of
 from self_awareness_follow_me.messages import MessageType
 from self_awareness_follow_me.scenario import Scenario, load_scenario
 
-START_S = 1_600_000_000.0
-"""Start of a recording if none is given (s since 1970)."""
+START_S = 1_600_000_000.0  # start of a recording if none is given (s since 1970)
 
 _DAY_S = 86_400.0
 _DAYS = 10_000  # that a recording may be of; bags end in 2106
@@ -41,28 +40,14 @@ _Act = Tuple[str, Callable[[int], List[Request]]]
 
 
 class Event(NamedTuple):
-    """A message as the recorder sees it.
+    """A message as the recorder sees it."""
 
-    Args:
-        stamp_ns: arrival (ns since 1970).
-        source: node.
-        topic: with the slash.
-        datatype: of the message.
-        message: what it says.
-        number: that its publisher gave it (header.seq).
-    """
-
-    stamp_ns: int
-    source: str
-    topic: str
-    datatype: str
-    message: Message
-    number: int
-
-    @property
-    def value(self) -> Optional[Value]:
-        """What the message says, as far as the scenario cares."""
-        return self.message.value
+    stamp_ns: int  # arrival (ns since 1970)
+    source: str  # node
+    topic: str  # with the slash
+    datatype: str  # of the message
+    message: Message  # what it says
+    number: int  # that its publisher gave it (header.seq)
 
 
 @dataclass(frozen=True)

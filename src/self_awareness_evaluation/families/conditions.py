@@ -17,15 +17,10 @@ _HOUR_S = 3600.0
 
 @dataclass(frozen=True)
 class Activity:
-    """Something that the robot does now and then; on and off last exponentially distributed.
+    """Something that the robot does now and then; both times are exponentially distributed."""
 
-    Args:
-        on_s: mean time that it lasts [s].
-        off_s: mean time between [s].
-    """
-
-    on_s: float
-    off_s: float
+    on_s: float  # mean time that it lasts
+    off_s: float  # mean time between
 
     def edges(self, begin: float, end: float, rng: np.random.Generator) -> np.ndarray:
         """Return when it begins and ends in turn [s], from `begin` to after `end`."""
@@ -40,29 +35,20 @@ class Activity:
 
 @dataclass(frozen=True)
 class Conditions:
-    """What is the same for all messages of a robot.
+    """What is the same for all messages of a robot."""
 
-    Args:
-        hiccups: share of messages that come some 20 ms later still, as what follows them does.
-        lost: share of messages that a listener does not get, of those that come soon after the
-            one before: queues lose what comes too fast for the listener.
-        lost_however_slow: the same of all other messages.
-        heavy: share of delays over the wireless link that are ten times as long.
-        load_period_s: time in which the load rises and falls once [s]; 0: it does not.
-        most_load: by how much longer work takes at the most, 1 or more.
-        stalls_an_hour: how often the host stalls; everything waits then, also the recorder, and
-            comes at once.
-        stall_s: for how long, at least and at most [s].
-    """
-
+    # Share of messages that come some 20 ms later still, as what follows them does.
     hiccups: float = 1e-5
+    # Share of messages that a listener does not get, of those that come soon after the one before:
+    # queues lose what comes too fast for the listener.
     lost: float = 0.0
-    lost_however_slow: float = 0.0
-    heavy: float = 0.0
-    load_period_s: float = 0.0
-    most_load: float = 1.0
+    lost_however_slow: float = 0.0  # the same of all other messages
+    heavy: float = 0.0  # share of delays over the wireless link that are ten times as long
+    load_period_s: float = 0.0  # time in which the load rises and falls once [s]; 0: it does not
+    most_load: float = 1.0  # by how much longer work takes at the most, 1 or more
+    # How often the host stalls; everything waits then, also the recorder, and comes at once.
     stalls_an_hour: float = 0.0
-    stall_s: Tuple[float, float] = (0.1, 0.6)
+    stall_s: Tuple[float, float] = (0.1, 0.6)  # for how long, at least and at most [s]
 
     def load(self, times: np.ndarray, phase: float) -> np.ndarray:
         """Return by how much longer work takes at some times [s]; phase: 0 to 1."""

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Set, Tuple
+from typing import Dict, FrozenSet, List, Set, Tuple
 
 import numpy as np
 
@@ -10,8 +10,7 @@ from self_awareness_evaluation.families.conditions import Activity, Conditions
 from self_awareness_evaluation.families.emissions import Answer, Emission, Feedback, Timer
 from self_awareness_evaluation.families.robot import Output, Robot
 
-RATES_HZ = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 30.0, 50.0, 100.0)
-"""Usual rates."""
+RATES_HZ = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 30.0, 50.0, 100.0)  # usual rates
 
 _CHAINS = 7
 FASTEST_CHAIN_HZ = 30.0
@@ -31,29 +30,27 @@ class Timing:
 
 
 class Draft:
-    """A robot while it is drawn: outputs are added one by one.
+    """A robot while it is drawn: outputs are added one by one."""
 
-    Args:
-        rng: draws.
-        timing: of all timers.
-        namespace: put before all names, like `/robot1`; or empty.
-    """
-
-    def __init__(self, rng: np.random.Generator, timing: Timing = Timing(),
-                 namespace: str = '') -> None:
-        self.rng = rng
+    def __init__(self, seed: int) -> None:
+        self.seed = seed
+        self.rng = np.random.default_rng(seed)
+        self.timing = Timing()
+        """Of all timers that are added from now on."""
+        self.namespace = ''
+        """Put before all names that are added from now on, like `/robot1`."""
+        self.conditions = Conditions()
         self.outputs: List[Output] = []
         self.activities: Dict[str, Activity] = {}
         self.subscriptions: Set[Tuple[str, str]] = set()
-        self.namespace = namespace
-        self._timing = timing
+        self.far: FrozenSet[str] = frozenset()
+        """Who is on the other side of the wireless link."""
         self._clocks: Dict[str, float] = {}
 
-    def robot(self, seed: int, conditions: Conditions = Conditions(),
-              far: Tuple[str, ...] = ()) -> Robot:
+    def robot(self) -> Robot:
         """Return the robot."""
-        return Robot(seed, tuple(self.outputs), conditions, self.activities,
-                     frozenset(self.subscriptions), frozenset(far))
+        return Robot(self.seed, tuple(self.outputs), self.conditions, self.activities,
+                     frozenset(self.subscriptions), self.far)
 
     def add(self, name: str, topic: str, datatype: str, emission: Emission,
             other: str = '') -> int:
@@ -66,7 +63,7 @@ class Draft:
 
     def add_timer(self, name: str, rate_hz: float, topic: str = 'data', activity: str = '') -> int:
         """Add an output with a timer."""
-        timing = self._timing
+        timing = self.timing
         ppm = self._clocks.setdefault(name, self.rng.uniform(-timing.ppm, timing.ppm))
         return self.add(name, topic, 'sensor_msgs/PointCloud2', Timer(
             1.0 / rate_hz, variation=timing.variation, ppm=ppm, wander=timing.wander,

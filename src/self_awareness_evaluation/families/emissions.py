@@ -4,13 +4,13 @@ All times are in seconds since the robot's start, float64 and ascending.
 """
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Callable, Optional, Protocol
+from dataclasses import dataclass, field
+from typing import Callable, Optional
 
 import numpy as np
 
 from self_awareness_evaluation.families.conditions import in_order
-from self_awareness_evaluation.families.scene import LEAD_S, Asked, Scene
+from self_awareness_evaluation.families.scene import LEAD_S, Scene
 
 _WANDER_PERIODS_S = (3600.0, 8000.0)
 _WANDER_STEP_S = 1.0
@@ -19,50 +19,34 @@ Heard = Callable[[int], np.ndarray]
 """Returns when the messages of an output, by its index, reach the component [s]."""
 
 
-class Emission(Protocol):
-    """Decides when an output sends.
+class Emission:
+    """Decides when an output sends."""
 
-    `trigger` is the index of the output that it answers to, if any; `activity` is the name of what
-    it sends in only, or empty.
-    """
-
-    @property
-    def trigger(self) -> Optional[int]:
-        """See above."""
-
-    @property
-    def activity(self) -> str:
-        """See above."""
+    trigger: Optional[int] = None
+    """Index of the output that it answers to."""
+    activity: str = ''
+    """Name of what it sends in only; empty: it always sends."""
 
     def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
         """Return when output number `index` sends, before any fault."""
+        raise NotImplementedError
 
 
 @dataclass(frozen=True)
-class Timer:
-    """Sends by a timer, whose phase is another one with every start.
+class Timer(Emission):
+    """Sends by a timer, whose phase is another one with every start."""
 
-    Args:
-        period_s: from tick to tick [s].
-        jitter_s: standard deviation of the time by which messages come after the tick [s].
-        variation: standard deviation of the gaps over the period; they add up. 0: exact ticks.
-        ppm: by how many millionths its clock is slow.
-        wander: the largest share by which the rate wanders within hours.
-        loop: what a stall of the host takes is added to the time of all later ticks.
-        activity: sends during this only; empty: always.
-    """
-
-    period_s: float
+    period_s: float  # from tick to tick [s]
+    # Standard deviation of the time by which messages come after the tick [s].
     jitter_s: float = 0.0003
+    # Standard deviation of the gaps over the period; they add up. 0: exact ticks.
     variation: float = 0.0
-    ppm: float = 0.0
-    wander: float = 0.0
-    loop: bool = False
+    ppm: float = 0.0  # by how many millionths its clock is slow
+    wander: float = 0.0  # the largest share by which the rate wanders within hours
+    loop: bool = False  # what a stall of the host takes is added to the time of all later ticks
     activity: str = ''
-    trigger: Optional[int] = None
 
     def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
-        """See Emission."""
         ticks = self._ticks(scene, index)
         if self.loop:
             ticks = _halted(ticks, scene)
@@ -98,17 +82,14 @@ class Timer:
 
 
 @dataclass(frozen=True)
-class TwoRates:
+class TwoRates(Emission):
     """Sends by one timer during an activity, and by another one otherwise."""
 
     during: Timer
     otherwise: Timer
     activity_of_rates: str
-    activity: str = ''
-    trigger: Optional[int] = None
 
     def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
-        """See Emission."""
         during, otherwise = (timer.times(scene, index, heard)
                              for timer in (self.during, self.otherwise))
         return np.sort(np.concatenate([
@@ -117,27 +98,18 @@ class TwoRates:
 
 
 @dataclass(frozen=True)
-class Answer:
-    """Sends some time after a message that the component hears.
+class Answer(Emission):
+    """Sends some time after a message that the component hears."""
 
-    Args:
-        trigger: index of the output that it answers to, one before its own.
-        delay_s: median time that the answer takes [s].
-        spread: standard deviation of the logarithm of that time.
-        every: only every so many messages are answered.
-        share: of the messages that are answered, 0 < share <= 1.
-        activity: answers during this only; empty: always.
-    """
-
-    trigger: int
-    delay_s: float
-    spread: float = 0.1
-    every: int = 1
-    share: float = 1.0
+    # Index of the output that it answers to, one before its own.
+    trigger: int = field()  # without the default of Emission
+    delay_s: float  # median time that the answer takes [s]
+    spread: float = 0.1  # standard deviation of the logarithm of that time
+    every: int = 1  # only every so many messages are answered
+    share: float = 1.0  # of the messages that are answered, 0 < share <= 1
     activity: str = ''
 
     def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
-        """See Emission."""
         inputs = heard(self.trigger)
         chosen = scene.during(self.activity, inputs)
         chosen &= np.arange(len(inputs)) % self.every == 0
@@ -146,49 +118,35 @@ class Answer:
         noise = scene.of_recording(f'delay {index}').normal(size=len(inputs))[chosen]
         inputs = inputs[chosen]
         delays = self.delay_s * np.exp(self.spread * noise) * scene.load(inputs)
-        scene.asked[index] = Asked(inputs, in_order(inputs + delays))
-        return scene.asked[index].answered
+        answered = in_order(inputs + delays)
+        scene.answers[index] = inputs, answered
+        return answered
 
 
 @dataclass(frozen=True)
-class Feedback:
-    """Sends while the component works on an answer, as an action server does.
+class Feedback(Emission):
+    """Sends while the component works on an answer, as an action server does."""
 
-    Args:
-        result: index of the output with the answers, one before its own and of the same component.
-        period_s: from message to message [s].
-    """
-
+    # Index of the output with the answers, one before its own and of the same component.
     result: int
-    period_s: float
-    activity: str = ''
-    trigger: Optional[int] = None
+    period_s: float  # from message to message [s]
 
     def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
-        """See Emission."""
-        asked, answered = scene.asked[self.result]
+        asked, answered = scene.answers[self.result]
         number = np.floor((answered - asked) / self.period_s).astype(np.int64)
         of_task = np.repeat(np.arange(len(asked)), number)
         nth = np.arange(len(of_task)) - np.repeat(np.cumsum(number) - number, number) + 1
-        times = asked[of_task] + nth * self.period_s
-        return np.sort(times)
+        return np.sort(asked[of_task] + nth * self.period_s)
 
 
 @dataclass(frozen=True)
-class Sporadic:
-    """Sends when something happens: gaps are exponentially distributed.
+class Sporadic(Emission):
+    """Sends when something happens: gaps are exponentially distributed."""
 
-    Args:
-        gap_s: their mean [s].
-        activity: sends during this only; empty: always.
-    """
-
-    gap_s: float
+    gap_s: float  # the mean
     activity: str = ''
-    trigger: Optional[int] = None
 
     def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
-        """See Emission."""
         rng = scene.of_recording(f'gaps {index}')
         number = rng.poisson((scene.end - scene.begin) / self.gap_s)
         times = np.sort(rng.uniform(scene.begin, scene.end, number))
@@ -196,21 +154,17 @@ class Sporadic:
 
 
 @dataclass(frozen=True)
-class Once:
+class Once(Emission):
     """Sends once, some seconds after the recording begins: what is latched."""
 
-    activity: str = ''
-    trigger: Optional[int] = None
-
     def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
-        """See Emission."""
         return scene.begin + LEAD_S + scene.of_recording(f'once {index}').uniform(0.5, 3.0, 1)
 
 
 def stalled(times: np.ndarray, scene: Scene) -> np.ndarray:
     """Return times at which what was to happen in a stall comes right after it."""
     moved = times.copy()
-    for begin, length in zip(*scene.stalls()):
+    for begin, length in zip(*scene.stalls):
         hit = (moved >= begin) & (moved < begin + length)
         moved[hit] = begin + length + (moved[hit] - begin) * 1e-3
     return in_order(moved)
@@ -218,6 +172,6 @@ def stalled(times: np.ndarray, scene: Scene) -> np.ndarray:
 
 def _halted(ticks: np.ndarray, scene: Scene) -> np.ndarray:
     """Return the ticks of a loop, whose time stands still in a stall."""
-    begins, lengths = scene.stalls()
+    begins, lengths = scene.stalls
     before = np.concatenate([[0.0], np.cumsum(lengths)])
     return ticks + before[np.searchsorted(begins - before[:-1], ticks, side='right')]

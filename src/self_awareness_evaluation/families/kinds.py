@@ -12,10 +12,12 @@ from self_awareness_evaluation.families.draft import (FASTEST_CHAIN_HZ, MOST_OF_
                                                       add_timers_and_chains)
 from self_awareness_evaluation.families.emissions import (Answer, Feedback, Once, Sporadic,
                                                           Timer, TwoRates)
-from self_awareness_evaluation.families.robot import CRASH, LOG, WARNING, Fault, Output, Robot
+from self_awareness_evaluation.families.faults import CRASH, NOTHING, Fault
+from self_awareness_evaluation.families.robot import LOG, WARNING, Robot
 
 _TRANSFORMS = 'tf2_msgs/TFMessage'
 _DIAGNOSTICS = 'diagnostic_msgs/DiagnosticArray'
+_TEMPERATURE = 'sensor_msgs/Temperature'
 _RESULT = 'move_base_msgs/MoveBaseActionResult[status.status='
 _HOLE_S = 6.0
 _HEAD_OR_TAIL_S = (6.0, 20.0)
@@ -25,16 +27,14 @@ _WATCHED = 1000  # the robot of a fleet that is watched
 
 
 def _timers(timing: Timing = Timing(), conditions: Conditions = Conditions()
-            ) -> Callable[[int], Robot]:
-    def drawn(seed: int) -> Robot:
-        draft = Draft(np.random.default_rng(seed), timing)
+            ) -> Callable[[Draft], None]:
+    def drawn(draft: Draft) -> None:
+        draft.timing, draft.conditions = timing, conditions
         add_timers_and_chains(draft)
-        return draft.robot(seed, conditions)
     return drawn
 
 
-def _large(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _large(draft: Draft) -> None:
     rates = draft.rng.choice((1.0, 2.0, 5.0, 10.0, 10.0, 10.0, 20.0), 25).tolist()
     ends = [(draft.add_timer(f'driver{number}', rate), rate) for number, rate in enumerate(rates)]
     heads = list(ends)
@@ -47,11 +47,10 @@ def _large(seed: int) -> Robot:
     for (index, _), number in zip(heads, shares.tolist()):
         draft.add_copies(index, number)
     draft.listen(4)
-    return draft.robot(seed, Conditions(lost=1e-3))
+    draft.conditions = Conditions(lost=1e-3)
 
 
-def _driving_docked(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _driving_docked(draft: Draft) -> None:
     draft.activities['driving'] = Activity(120.0, 120.0)
     add_timers_and_chains(draft)
     for number, rate in enumerate((10.0, 20.0, 50.0)):
@@ -61,11 +60,9 @@ def _driving_docked(seed: int) -> Robot:
     for number, rate in enumerate((5.0, 10.0)):
         draft.add_timer(f'planner{number}', rate)
         draft.add_timer(f'planner{number}', rate, 'motion', activity='driving')
-    return draft.robot(seed)
 
 
-def _rate_modes(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _rate_modes(draft: Draft) -> None:
     rng = draft.rng
     draft.activities['driving'] = Activity(60.0, 60.0)
     for number in range(3):
@@ -75,20 +72,16 @@ def _rate_modes(seed: int) -> Robot:
         index = draft.add(f'motion{number}', 'state', 'nav_msgs/Odometry', TwoRates(
             Timer(1.0 / fast), Timer(1.0 / float(rng.choice((1.0, 2.0)))), 'driving'))
         draft.add_chain(f'motion_filter{number}', index, fast, number % 2)
-    return draft.robot(seed)
 
 
-def _small(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _small(draft: Draft) -> None:
     rate = float(draft.rng.choice((5.0, 10.0, 20.0, 50.0)))
     index = draft.add_timer('driver', rate)
     draft.add_copies(index, int(draft.rng.integers(0, 2)))
     draft.add_chain('filter', index, rate, int(draft.rng.integers(1, 3)))
-    return draft.robot(seed)
 
 
-def _servers(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _servers(draft: Draft) -> None:
     rng = draft.rng
     for number in range(2):
         draft.add_timer(f'driver{number}', float(rng.choice((1.0, 10.0, 50.0))))
@@ -98,19 +91,16 @@ def _servers(seed: int) -> Robot:
             asked = draft.add(name, 'request', 'std_msgs/String', Sporadic(rng.uniform(0.5, 4.0)))
             answer = draft.add_answer(f'server{server}', asked, 0.04, f'result{client}')
             draft.add_answer(name, answer, 0.04, 'done')
-    return draft.robot(seed)
 
 
-def _wireless(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _wireless(draft: Draft) -> None:
     add_timers_and_chains(draft)
     sources = sorted({output.source for output in draft.outputs})
     far = draft.rng.choice(sources, len(sources) // 3, replace=False).tolist()
-    return draft.robot(seed, Conditions(heavy=0.01), tuple(far))
+    draft.conditions, draft.far = Conditions(heavy=0.01), frozenset(far)
 
 
-def _events_only(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _events_only(draft: Draft) -> None:
     rng = draft.rng
     draft.activities['session'] = Activity(rng.uniform(60.0, 180.0), rng.uniform(120.0, 300.0))
     for number in range(2):
@@ -126,11 +116,9 @@ def _events_only(seed: int) -> Robot:
         trigger = int(rng.choice(before[:2] if number < 3 else before))
         add_task(draft, f'task{number}', trigger)
     draft.subscriptions.add((draft.outputs[person].source, draft.outputs[button].source))
-    return draft.robot(seed)
 
 
-def _bursty(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _bursty(draft: Draft) -> None:
     rng = draft.rng
     timers = int(rng.integers(5, 13))
     rates = rng.choice((2.0, 5.0, 10.0, 20.0, 30.0, 50.0), timers).tolist()
@@ -150,28 +138,27 @@ def _bursty(seed: int) -> Robot:
     for number in range(int(rng.integers(2, 6))):
         add_task(draft, f'task{number}', speech)
     draft.listen(2)
-    return draft.robot(seed)
 
 
-def _two_robots(seed: int) -> Robot:
-    rng = np.random.default_rng(seed)
-    first, second = (Draft(rng, namespace=f'/robot{number}') for number in (1, 2))
-    add_timers_and_chains(first, 0)
-    add_timers_and_chains(second, 0)
-    shift = len(first.outputs)
+def _two_robots(draft: Draft) -> None:
+    second = Draft(draft.seed)
+    second.rng = draft.rng
+    draft.namespace, second.namespace = '/robot1', '/robot2'
+    for each in (draft, second):
+        add_timers_and_chains(each, 0)
+    shift = len(draft.outputs)
     for output in second.outputs:
         emission = output.emission
         if isinstance(emission, Answer):
             emission = replace(emission, trigger=emission.trigger + shift)
-        first.outputs.append(replace(output, emission=emission))
-    first.subscriptions |= second.subscriptions
-    leader = first.outputs[0].source
-    first.subscriptions |= {(leader, output.source) for output in second.outputs[:3]}
-    return first.robot(seed, Conditions(lost=1e-4))
+        draft.outputs.append(replace(output, emission=emission))
+    draft.subscriptions |= second.subscriptions
+    leader = draft.outputs[0].source
+    draft.subscriptions |= {(leader, output.source) for output in second.outputs[:3]}
+    draft.conditions = Conditions(lost=1e-4)
 
 
-def _pausing_chains(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _pausing_chains(draft: Draft) -> None:
     rng = draft.rng
     for number in range(int(rng.integers(3, 7))):
         draft.add_timer(f'driver{number}', float(rng.choice((1.0, 5.0, 10.0, 50.0))))
@@ -193,11 +180,9 @@ def _pausing_chains(seed: int) -> Robot:
     for number, (anchor, rate) in enumerate(anchors):
         draft.add(f'planner{number}', 'plan', 'nav_msgs/Path', Answer(
             anchor, rng.uniform(0.4, 0.7) / rate, rng.uniform(0.15, 0.3), every=4))
-    return draft.robot(seed)
 
 
-def _dialogue(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _dialogue(draft: Draft) -> None:
     rng = draft.rng
     draft.activities['session'] = Activity(rng.uniform(60.0, 180.0), rng.uniform(60.0, 240.0))
     for number in range(3):
@@ -212,11 +197,9 @@ def _dialogue(seed: int) -> Robot:
             draft.add_timer(name, float(rng.choice((0.5, 1.0, 2.0))), 'state')
     for number in range(3):
         add_task(draft, f'task{number}', asked)
-    return draft.robot(seed)
 
 
-def _long_pauses(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _long_pauses(draft: Draft) -> None:
     rng = draft.rng
     for number in range(4):
         draft.add_timer(f'driver{number}', float(rng.choice((1.0, 5.0, 10.0, 50.0))))
@@ -227,40 +210,27 @@ def _long_pauses(seed: int) -> Robot:
         index = draft.add_timer(f'joystick{number}', rate, 'joy', used)
         draft.add_chain(f'teleop{number}', index, rate, number % 2)
     draft.listen(2)
-    return draft.robot(seed)
 
 
-def _of_one_make(seed: int, number: Optional[int] = None) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _of_one_make(draft: Draft, number: int) -> None:
     add_timers_and_chains(draft)
-    if number is not None:
-        own = np.random.default_rng((seed, number))
-        draft.add(f'own{number}', 'data', 'sensor_msgs/Temperature',
-                  Timer(1.0 / float(own.choice(RATES_HZ))))
-    return draft.robot(seed)
+    own = np.random.default_rng((draft.seed, number))
+    draft.add(f'own{number}', 'data', _TEMPERATURE, Timer(1.0 / float(own.choice(RATES_HZ))))
 
 
-def _of_fleet(seed: int, number: int = _WATCHED) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _of_fleet(draft: Draft, number: int = _WATCHED) -> None:
     add_timers_and_chains(draft)
     if number % 2 == 0:
         draft.add_chain('gripper', draft.add_timer('arm', _ARM_HZ), _ARM_HZ, 2)
-    own = np.random.default_rng((seed, number))
-    draft.add(f'sensor{number}', 'data', 'sensor_msgs/Temperature',
-              Timer(1.0 / float(own.choice(RATES_HZ))))
-    robot = draft.robot(seed)
-    return replace(robot, outputs=tuple(_with_clock(output, own) for output in robot.outputs))
+    own = np.random.default_rng((draft.seed, number))
+    draft.add(f'sensor{number}', 'data', _TEMPERATURE, Timer(1.0 / float(own.choice(RATES_HZ))))
+    for index, output in enumerate(draft.outputs):
+        ppm = float(own.uniform(-_CLOCKS_PPM, _CLOCKS_PPM))
+        if isinstance(output.emission, Timer):
+            draft.outputs[index] = replace(output, emission=replace(output.emission, ppm=ppm))
 
 
-def _with_clock(output: Output, own: np.random.Generator) -> Output:
-    ppm = float(own.uniform(-_CLOCKS_PPM, _CLOCKS_PPM))
-    emission = output.emission
-    return (replace(output, emission=replace(emission, ppm=ppm))
-            if isinstance(emission, Timer) else output)
-
-
-def _everyday(seed: int) -> Robot:
-    draft = Draft(np.random.default_rng(seed))
+def _everyday(draft: Draft) -> None:
     rng = draft.rng
     add_timers_and_chains(draft, 0)
     draft.add('map_server', '/map', 'nav_msgs/OccupancyGrid[latched]', Once())
@@ -280,7 +250,6 @@ def _everyday(seed: int) -> Robot:
         draft.add_timer(name, 10.0, 'command')
         for lines in ('rosgraph_msgs/Log[level=2]', WARNING):
             draft.add(name, LOG, lines, Sporadic(rng.uniform(3.0, 20.0)))
-    return draft.robot(seed)
 
 
 def _add_list(draft: Draft, name: str, topic: str, field: str, usual: str, other: str) -> None:
@@ -288,9 +257,9 @@ def _add_list(draft: Draft, name: str, topic: str, field: str, usual: str, other
     draft.add(name, topic, f'{field}{usual}]', Timer(1.0), f'{field}{other}]')
 
 
-def _hole(robot: Robot, number: int, seconds: float) -> Optional[Fault]:
+def _hole(robot: Robot, number: int, seconds: float) -> Fault:
     begin_s = (seconds - _HOLE_S) / 2.0
-    return Fault(CRASH, robot.regular[0], begin_s, begin_s + _HOLE_S) if number == 0 else None
+    return Fault(CRASH, robot.regular[0], begin_s, begin_s + _HOLE_S) if number == 0 else NOTHING
 
 
 def _head_or_tail(robot: Robot, number: int, seconds: float) -> Fault:
@@ -302,28 +271,28 @@ def _head_or_tail(robot: Robot, number: int, seconds: float) -> Fault:
 
 @dataclass(frozen=True)
 class Family:
-    """Robots of a kind.
+    """Robots of a kind."""
 
-    Args:
-        told: what they are, in a few words.
-        draw: returns the robot of a seed.
-        one_start: the recordings to learn from are all of one start.
-        watched_start: and so are those that are watched; else each is of another start.
-        flaw: returns what is wrong with a recording to learn from, by the robot, the number of
-            the recording and its length [s]; None: nothing is.
-        of_make: returns one of several robots of a make, by the seed and a number: each recording
-            to learn from is of another one, and all that is watched of one more; None: there is
-            one robot.
-        names_robots: the recordings to learn from say of which robot they are.
-    """
+    told: str  # what they are, in a few words
+    draw: Callable[[Draft], None]  # draws a robot
+    one_start: bool = False  # the recordings to learn from are all of one start
+    watched_start: bool = False  # and so are those that are watched; else each is of another start
+    # Returns what is wrong with a recording to learn from, by the robot, the number of the
+    # recording and its length [s].
+    flaw: Callable[[Robot, int, float], Fault] = lambda *_: NOTHING
+    # Draws one of several robots of a make, by a number: each recording to learn from is of
+    # another one, and all that is watched of one more; None: there is one robot.
+    of_make: Optional[Callable[[Draft, int], None]] = None
+    names_robots: bool = False  # the recordings to learn from say of which robot they are
 
-    told: str
-    draw: Callable[[int], Robot]
-    one_start: bool = False
-    watched_start: bool = False
-    flaw: Callable[[Robot, int, float], Optional[Fault]] = lambda *_: None
-    of_make: Optional[Callable[[int, int], Robot]] = None
-    names_robots: bool = False
+    def robot(self, seed: int, number: Optional[int] = None) -> Robot:
+        """Return the robot of a seed, at least 0; of a make, that of a number if one is given."""
+        draft = Draft(seed)
+        if number is None or self.of_make is None:
+            self.draw(draft)
+        else:
+            self.of_make(draft, number)
+        return draft.robot()
 
 
 _STALLS = Conditions(stalls_an_hour=6.0)
@@ -375,7 +344,7 @@ FAMILIES: Dict[str, Family] = {  # all families by name; more are added below
     'everyday': Family('timers and chains; transforms, a latched map, log lines, goals, '
                        'diagnostics', _everyday),
     'one_make': Family('timers; robots of one make with a node of their own each: learned from '
-                       'some, watching another', _of_one_make, of_make=_of_one_make),
+                       'some, watching another', _timers(), of_make=_of_one_make),
 }
 DEFAULT = tuple(FAMILIES)
 """Those that are evaluated if no others are asked for: each with something of its own."""
@@ -386,8 +355,3 @@ FAMILIES['fleet'] = Family(
     names_robots=True)
 FAMILIES['fleet_own'] = Family('the robot of `fleet` that is watched, learned from itself',
                                _of_fleet)
-
-
-def draw(family: str, seed: int) -> Robot:
-    """Return a robot of a family, one of FAMILIES; seed: at least 0."""
-    return FAMILIES[family].draw(seed)

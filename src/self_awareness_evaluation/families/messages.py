@@ -32,12 +32,10 @@ def attributes(datatype: str, scene: Scene, index: int, times: np.ndarray,
     """Return the attributes of messages as they are heard (pack_attributes).
 
     Args:
-        datatype: of the messages.
+        datatype, index: of the output.
         scene: decides what is random.
-        index: of the output.
-        times: when the messages come [s].
-        numbers: of the messages, as they were sent.
-        on_the_way_s: how long the messages took [s].
+        times, numbers: when the messages come [s], and how many were sent before.
+        on_the_way_s: how long they took [s].
     """
     of_robot = _of_robot(datatype, index)
     rng = scene.of_recording(f'attributes {index}')

@@ -2,47 +2,47 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import FrozenSet, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
+from self_awareness_evaluation.families.faults import (AFTER_CRASH, CRASH, FLOOD, HALF_RATE, LATE,
+                                                       LOAD, LONGEST_START_S, LOSSES, MISSES,
+                                                       NOTHING, OLD, OTHER, RESTART, SILENT,
+                                                       SLOWER, STALL, STARVED, STOP, Fault)
 from self_awareness_evaluation.families.kinds import FAMILIES
-from self_awareness_evaluation.families.robot import (AFTER_CRASH, CRASH, FLOOD, HALF_RATE, LATE,
-                                                      LONGEST_START_S, LOSSES, MISSES, OLD, OTHER,
-                                                      RESTART, SILENT, SLOWER, STARVED, STOP,
-                                                      WARNING, Fault, Robot)
-from self_awareness_evaluation.records import FaultRecord, Learning
-from self_awareness_evaluation.windowed_events import WindowedEvents
+from self_awareness_evaluation.families.robot import WARNING
+from self_awareness_evaluation.records import FaultRecord, Learning, WindowedEvents
+from self_awareness_evaluation.records import Robot as RecordedRobot
 
-DEATH = 'death'
-"""The crash of a component that is silent until something is asked of it."""
+DEATH = 'death'  # the crash of a component that is silent until something is asked of it
 
 SELDOM = 'seldom'
 """The crash of a component that speaks when something happens, and answers to nobody."""
 
-NEVER = 'absent'
-"""What is latched at every start does not come."""
+NEVER = 'absent'  # what is latched at every start does not come
 
-KINDS = (CRASH, HALF_RATE, LATE, DEATH, MISSES, STARVED, SILENT, SELDOM, RESTART, *AFTER_CRASH,
-         SLOWER, OLD, LOSSES, OTHER, FLOOD, NEVER)
-"""Kinds of faults as they are told apart in the results."""
+TITLES: Dict[str, str] = {
+    CRASH: 'crashes', HALF_RATE: 'half rate', LATE: 'late answers', DEATH: 'deaths when asked',
+    MISSES: 'inputs missed now and then', STARVED: 'starved CPU', SILENT: 'everything silent',
+    SELDOM: 'deaths of who speaks seldom', RESTART: 'restarts',
+    STALL: 'a stall follows a crash', LOAD: 'load follows a crash',
+    STOP: 'others stop after a crash', SLOWER: '0.7 of the rate', OLD: 'stamps are 3 s older',
+    LOSSES: '30 % of the messages lost', OTHER: 'no transform, failed goals, an error (WARN)',
+    FLOOD: 'log lines without end', NEVER: 'no latched message (WARN)'}
+"""What tables call the kinds of faults."""
 
-WATCHED_S = 1800.0
-"""Length of a recording of normal operation that is watched [s]."""
-
-AFTER_ONSET_S = 60.0
-"""A recording with a fault lasts for so long after the onset [s]."""
-
-AFTER_DEATH_S = 1800.0
-"""And for so long after a death."""
+KINDS = tuple(TITLES)  # as they are told apart in the results
+WATCHED_S = 1800.0  # length of a recording of normal operation that is watched [s]
+AFTER_ONSET_S = 60.0  # a recording with a fault lasts for so long after the onset [s]
+AFTER_DEATH_S = 1800.0  # and for so long after a death
 
 RESTARTS_IN_S, AFTER_RESTART_S = 10.0, 180.0
 """A component that is started again is silent for so long, and then watched for so long [s]."""
 
 _ONSET_S = 60.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
-
 _ONE_IN = 3  # components has old stamps, or loses messages
 _LOSES_S = 20.0
 
@@ -51,41 +51,29 @@ _STOP_TOGETHER = 3
 
 _PAUSES = 3.0  # a recording goes on for so many of its longest pauses after who speaks seldom died
 _PAUSES_FROM_S = 3600.0  # the longest pause is that of so long a time
-
 _MISSING_S = 60.0  # a death is counted if the recording goes on for this long afterwards
-
-MOST_STARTS = 16
-"""The most starts that systems learn from."""
+MOST_STARTS = 16  # the most starts that systems learn from
 
 
 @dataclass(frozen=True)
 class _Section:
-    """Where recordings of a purpose come from: a start each, or parts of one and the same start.
+    """Where recordings of a purpose come from: a start each, or parts of one and the same."""
 
-    Args:
-        first: the seed of the first start.
-        from_s: begin of the first part [s].
-        every_s: from the begin of a part to that of the next one [s].
-    """
-
-    first: int
-    from_s: float
-    every_s: float
+    first: int  # seed of the first start
+    from_s: float  # begin of the first part
+    every_s: float  # from the begin of a part to that of the next one
+    is_learned: bool = False
 
 
 _ONE_START = 0
-_TRAINING = _Section(0, 0.0, 600.0)
-_CALIBRATION = _Section(100, 10_000.0, 600.0)
+_TRAINING = _Section(0, 0.0, 600.0, is_learned=True)
+_CALIBRATION = _Section(100, 10_000.0, 600.0, is_learned=True)
 _FAULTS = _Section(10_000, 15_000.0, 200.0)
 _WATCHED = _Section(1000, 36_000.0, WATCHED_S)
 
 
 def check_hours(families: Sequence[str], hours: float) -> None:
-    """Check that so many hours of normal operation can be watched.
-
-    Raises:
-        ValueError: a family is watched in one start, which does not last that long.
-    """
+    """Check that so many hours of normal operation can be watched, of some in one start."""
     longest = (LONGEST_START_S - _WATCHED.from_s) / 3600.0
     short = [name for name in families if FAMILIES[name].watched_start]
     if short and hours > longest:
@@ -94,39 +82,29 @@ def check_hours(families: Sequence[str], hours: float) -> None:
 
 
 class Records:
-    """The recordings of one robot, simulated when they are needed.
-
-    Args:
-        family: one of FAMILIES.
-        seed: of the robot.
-    """
+    """The recordings of one robot of a family, simulated when they are needed."""
 
     def __init__(self, family: str, seed: int) -> None:
         self._family = FAMILIES[family]
-        self.robot: Robot = self._family.draw(seed)
+        self.robot = self._family.robot(seed)
 
     def training(self, learning: Learning) -> List[WindowedEvents]:
         """Return the recordings to train on."""
-        return [self._recorded(_TRAINING, number, learning.training_s, self._family.one_start,
-                               self._family.flaw(self.robot, number, learning.training_s))
+        length_s = learning.training_s
+        return [self._recorded(_TRAINING, number, length_s,
+                               self._family.flaw(self.robot, number, length_s))
                 for number in range(learning.starts)]
 
     def calibration(self, learning: Learning) -> List[WindowedEvents]:
         """Return the recordings to calibrate on, other ones."""
-        return [self._recorded(_CALIBRATION, number, learning.calibration_s,
-                               self._family.one_start)
+        return [self._recorded(_CALIBRATION, number, learning.calibration_s)
                 for number in range(learning.calibrations)]
 
     def watched(self, hours: float) -> Iterator[WindowedEvents]:
-        """Yield recordings of normal operation of WATCHED_S, and a shorter last one.
-
-        Args:
-            hours: see check_hours().
-        """
+        """Yield recordings of normal operation of WATCHED_S, and a shorter last one."""
         left = hours * 3600.0
         for number in range(int(np.ceil(left / WATCHED_S))):
-            yield self._recorded(_WATCHED, number, min(WATCHED_S, left),
-                                 self._family.watched_start)
+            yield self._recorded(_WATCHED, number, min(WATCHED_S, left))
             left -= WATCHED_S
 
     def faults(self, kinds: Tuple[str, ...], most: Optional[int] = None,
@@ -140,17 +118,17 @@ class Records:
             most: only of so many components for each kind, spread evenly; None: of all.
             after_death_s: a recording lasts for so long after a death [s].
         """
-        regular, answering = self.robot.regular, self.robot.answering
-        who = {CRASH: regular, HALF_RATE: regular,
-               LATE: [source for source in regular if source in answering],
+        robot = self.robot
+        regular, answering = robot.regular, robot.answering
+        late = [source for source in regular if source in answering]
+        who = {CRASH: regular, HALF_RATE: regular, LATE: late, MISSES: late,
                DEATH: [source for source in answering if source not in regular],
-               MISSES: [source for source in regular if source in answering],
-               STARVED: [''], SILENT: [''], SELDOM: self.robot.seldom, RESTART: regular,
-               SLOWER: regular, OLD: self.robot.numbered[::_ONE_IN],
-               LOSSES: self.robot.numbered[1::_ONE_IN],
-               OTHER: self.robot.sending(lambda output: bool(output.other)),
-               FLOOD: self.robot.sending(lambda output: output.datatype == WARNING),
-               NEVER: self.robot.latching,
+               STARVED: [''], SILENT: [''], SELDOM: robot.seldom, RESTART: regular,
+               SLOWER: regular, OLD: robot.numbered[::_ONE_IN],
+               LOSSES: robot.numbered[1::_ONE_IN],
+               OTHER: robot.sending(lambda output: bool(output.other)),
+               FLOOD: robot.sending(lambda output: output.datatype == WARNING),
+               NEVER: robot.latching,
                **{kind: regular[first::len(AFTER_CRASH)]
                   for first, kind in enumerate(AFTER_CRASH)}}
         number = 0
@@ -173,11 +151,10 @@ class Records:
         lasts_s = {RESTART: RESTARTS_IN_S, LOSSES: _LOSES_S}.get(kind, LONGEST_START_S)
         fault = Fault(CRASH if kind in (DEATH, SELDOM, NEVER) else kind, source, onset_s,
                       onset_s + lasts_s)
-        same_start = self._family.watched_start
         if kind in (DEATH, *AFTER_CRASH):
-            healthy = self._recorded(_FAULTS, number, seconds, same_start)
+            healthy = self._recorded(_FAULTS, number, seconds)
             begin = healthy.end - nanoseconds(seconds)
-            sent = _stamps(healthy, source)
+            sent = healthy.stamps_of(source)
             missing = sent[sent >= begin + nanoseconds(onset_s)]
             if not len(missing) or (kind == DEATH
                                     and missing[0] + nanoseconds(_MISSING_S) > healthy.end):
@@ -185,24 +162,18 @@ class Records:
             others = self.robot.strangers_of(source, _STOP_TOGETHER) if kind == STOP else ()
             fault = replace(fault, others=others,
                             follows_s=(int(missing[0]) - begin) / SECOND_NS + _FOLLOWS_S)
-        recording = self._recorded(_FAULTS, number, seconds, same_start, fault)
+        recording = self._recorded(_FAULTS, number, seconds, fault)
         onset = (int(missing[0]) if kind == DEATH
                  else recording.end - nanoseconds(seconds) + nanoseconds(onset_s))
         yield FaultRecord(kind, (source,) if source else (), recording, onset,
                           None if lasts_s == LONGEST_START_S else onset + nanoseconds(lasts_s),
-                          self._involved(kind, source))
-
-    def _involved(self, kind: str, source: str) -> Optional[FrozenSet[str]]:
-        """Return who may suffer from a fault of a component alone."""
-        if not source or kind in AFTER_CRASH:
-            return None
-        return frozenset(self.robot.reached_by(source))
+                          None if not source or kind in AFTER_CRASH
+                          else frozenset(self.robot.reached_by(source)))
 
     def _lasts(self, kind: str, source: str, number: int, after_death_s: float) -> float:
         """Return for how long a recording with a fault goes on after the onset [s]."""
         if kind == SELDOM:
-            healthy = self._recorded(_FAULTS, number, _PAUSES_FROM_S, self._family.watched_start)
-            stamps = _stamps(healthy, source)
+            stamps = self._recorded(_FAULTS, number, _PAUSES_FROM_S).stamps_of(source)
             return _PAUSES * float(np.max(np.diff(stamps), initial=0)) / SECOND_NS
         if kind == RESTART:
             return RESTARTS_IN_S + AFTER_RESTART_S
@@ -210,29 +181,27 @@ class Records:
             return 2.0 * AFTER_ONSET_S
         return after_death_s if kind == DEATH else AFTER_ONSET_S
 
-    def _recorded(self, section: _Section, number: int, seconds: float, one_start: bool,
-                  fault: Optional[Fault] = None) -> WindowedEvents:
-        robot = self._robot_of(section, number)
-        start = _ONE_START if one_start else section.first + number
-        begin_s = section.from_s + number * section.every_s if one_start else 0.0
-        recording = robot.start(start, seconds, fault, begin_s)
-        is_known = self._family.names_robots and section in (_TRAINING, _CALIBRATION)
-        return replace(recording, robot=f'r{section.first + number}') if is_known else recording
-
-    def _robot_of(self, section: _Section, number: int) -> Robot:
-        """Return the robot of a recording: where there are several, that which is watched is none
-        of those that are learned from."""
-        of_make = self._family.of_make
-        if of_make is None:
-            return self.robot
-        return of_make(self.robot.seed, _WATCHED.first if section in (_WATCHED, _FAULTS)
-                       else section.first + number)
+    def _recorded(self, section: _Section, number: int, seconds: float,
+                  fault: Fault = NOTHING) -> WindowedEvents:
+        family, robot, turn = self._family, self.robot, section.first + number
+        if family.of_make is not None:  # who is watched is none that is learned from
+            robot = family.robot(robot.seed, turn if section.is_learned else _WATCHED.first)
+        if family.one_start if section.is_learned else family.watched_start:
+            recording = robot.start(_ONE_START, seconds, fault,
+                                    section.from_s + number * section.every_s)
+        else:
+            recording = robot.start(turn, seconds, fault)
+        is_told = family.names_robots and section.is_learned
+        return replace(recording, robot=f'r{turn}') if is_told else recording
 
 
-def _stamps(recording: WindowedEvents, source: str) -> np.ndarray:
-    """Return when a component sends [ns]."""
-    ours = np.array([known.source == source for known in recording.event_types])
-    return recording.stamps[ours[recording.ids]]
+def recorded(family: str, seed: int, hours: float, kinds: Tuple[str, ...] = KINDS,
+             most: Optional[int] = None, after_death_s: float = AFTER_DEATH_S) -> RecordedRobot:
+    """Return the records of a robot; hours: of normal operation; all else: see Records."""
+    records = Records(family, seed)
+    return RecordedRobot(
+        records.robot.sources, records.robot.graph, records.training, records.calibration,
+        lambda: records.watched(hours), lambda: records.faults(kinds, most, after_death_s))
 
 
 def _spread(number: int, most: Optional[int]) -> Set[int]:

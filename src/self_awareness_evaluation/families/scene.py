@@ -2,22 +2,18 @@
 from __future__ import annotations
 
 import zlib
-from typing import Dict, List, NamedTuple, Tuple
+from typing import Dict, List, Tuple
 
 import numpy as np
 
 from self_awareness_evaluation.families.conditions import Activity, Conditions
+from self_awareness_evaluation.families.faults import STALL, Fault
 
 LEAD_S = 10.0
 """A recording begins on a robot that has run for this long [s]; the longest answers fit into it.
 """
 
-
-class Asked(NamedTuple):
-    """What was asked of an output, and when it answered [s]; of the same length."""
-
-    asked: np.ndarray
-    answered: np.ndarray
+LASTS_S = 2.0  # what follows a crash lasts for so long [s]
 
 
 class Scene:
@@ -26,28 +22,26 @@ class Scene:
     Times are seconds since the robot's start, float64. What holds for a whole start (phases of
     timers, the time of day) is drawn by `of_start`, all else by `of_recording`. Every purpose has
     a stream of its own: what one output draws does not change another one.
-
-    Args:
-        robot_seed: of the robot, at least 0.
-        start_seed: of the start, at least 0.
-        begin: of the recording [s].
-        end: of the recording [s].
-        conditions: of the robot.
-        activities: of the robot, by name.
     """
 
-    def __init__(self, robot_seed: int, start_seed: int, begin: float, end: float,
-                 conditions: Conditions, activities: Dict[str, Activity]) -> None:
-        self.begin = begin - LEAD_S
+    def __init__(self, robot_seed: int, start_seed: int, recorded_from: float, end: float,
+                 conditions: Conditions, activities: Dict[str, Activity], fault: Fault) -> None:
+        self.recorded_from = recorded_from
+        self.begin = recorded_from - LEAD_S
         self.end = end
         self.conditions = conditions
+        self.fault = fault
         self.published: List[np.ndarray] = []
-        self.asked: Dict[int, Asked] = {}
+        self.answers: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
+        """When an output was asked, and when it answered [s]."""
         self._seed = (robot_seed, start_seed)
-        self._recording = round(begin * 1e3)
+        self._recording = round(recorded_from * 1e3)
         self._edges = {name: activity.edges(self.begin, self.end, self.of_recording(name))
                        for name, activity in activities.items()}
-        self._stalls = conditions.stalls(self.begin, end, self.of_recording('stalls'))
+        self.stalls = conditions.stalls(self.begin, end, self.of_recording('stalls'))
+        """When the host stalls, and for how long [s]."""
+        if fault.kind == STALL:
+            self._stall_once_more(recorded_from + fault.follows_s)
         self._day_phase = self.of_start('time of day').uniform(0.0, 1.0)
 
     def of_start(self, purpose: str) -> np.random.Generator:
@@ -69,12 +63,17 @@ class Scene:
         # Before the first edge the activity is off, after it on, and so on.
         return np.searchsorted(self._edges[activity], times, side='right') % 2 == 1
 
-    def stalls(self) -> Tuple[np.ndarray, np.ndarray]:
-        """Return when the host stalls in the recording, and for how long [s]."""
-        return self._stalls
+    def in_fault(self, times: np.ndarray) -> np.ndarray:
+        """Return which times [s] lie in the fault."""
+        return ((times >= self.recorded_from + self.fault.onset_s)
+                & (times < self.recorded_from + self.fault.relief_s))
 
-    def stall(self, begin: float, length: float) -> None:
-        """Let the host stall once more [s], before anything was published."""
-        begins, lengths = self._stalls
+    def has(self, kind: str, source: str, times: np.ndarray) -> np.ndarray:
+        """Return at which times [s] a component has a fault of a kind."""
+        is_one = (self.fault.kind, self.fault.source) == (kind, source)
+        return self.in_fault(times) & is_one
+
+    def _stall_once_more(self, begin: float) -> None:
+        begins, lengths = self.stalls
         place = np.searchsorted(begins, begin)
-        self._stalls = (np.insert(begins, place, begin), np.insert(lengths, place, length))
+        self.stalls = np.insert(begins, place, begin), np.insert(lengths, place, LASTS_S)

@@ -7,20 +7,23 @@ import random
 import signal
 import threading
 import time
-from typing import Iterator
+from typing import ContextManager, Iterator
 
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Starvation
 
 _BURST_S = (0.2, 1.5)  # at least and at most
 _BETWEEN_BURSTS_S = 20.0  # on the average
-_BUSY = Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)
+
+BUSY = Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)
+"""Four busy processes on every core take the machine."""
 
 
 @contextlib.contextmanager
-def nothing() -> Iterator[float]:
-    """Break nothing."""
-    yield time.time()
+def broken_by(what: ContextManager[None]) -> Iterator[float]:
+    """Hand out since when something is broken that another with statement breaks and mends."""
+    with what:
+        yield time.time()
 
 
 @contextlib.contextmanager
@@ -35,20 +38,13 @@ def stopped(pid: int) -> Iterator[float]:
 
 
 @contextlib.contextmanager
-def starved() -> Iterator[float]:
-    """Let four busy processes on every core take the machine."""
-    with induction.starved(_BUSY):
-        yield time.time()
-
-
-@contextlib.contextmanager
 def bursts(chance: random.Random) -> Iterator[float]:
     """Let busy processes on all cores take the machine for a moment now and then."""
     over = threading.Event()
 
     def take() -> None:
         while not over.wait(chance.expovariate(1.0 / _BETWEEN_BURSTS_S)):
-            with induction.starved(_BUSY):
+            with induction.starved(BUSY):
                 over.wait(chance.uniform(*_BURST_S))
 
     thread = threading.Thread(target=take)

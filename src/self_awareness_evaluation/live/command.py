@@ -16,8 +16,7 @@ from self_awareness_evaluation.live.rows import Row
 from self_awareness_evaluation.pages import RESULTS, machine, write_section, written_by
 from self_awareness_evaluation.records import Learning
 
-RELIABILITY = 'reliability/README.md'
-"""The page of soak and recovery, in the folder of the pages."""
+RELIABILITY = 'reliability/README.md'  # the page of soak and recovery, in the folder of the pages
 
 
 def add(parts: Any) -> None:
@@ -88,7 +87,7 @@ def _run(arguments: argparse.Namespace, command: str) -> None:
     """Run a session, whose rows are saved after each of them, and write its section."""
     # ROS is imported only where a session runs.
     from self_awareness_evaluation.live import plans, results, session
-    from self_awareness_evaluation.live.master import own_master
+    from self_awareness_evaluation.live.processes import own_master
     planned, told = {'live': (plans.live, results.of_faults),
                      'nodes': (plans.nodes, results.of_faults),
                      'soak': (plans.soak, results.of_soak),
@@ -114,14 +113,8 @@ def _run(arguments: argparse.Namespace, command: str) -> None:
 
 def write(arguments: argparse.Namespace, command: str, rows: Sequence[Row], lines: Sequence[str],
           wrong: Sequence[str]) -> None:
-    """Write the section of a page, which is made if it is not there.
-
-    Args:
-        arguments: of the command.
-        command: that the section says it was written by.
-        rows: of the session.
-        lines: of the section.
-        wrong: what was not as it should be.
+    """Write the section of a page, which is made if it is not there; wrong: what was not as it
+    should be.
 
     Raises:
         ValueError: not all was as it should be; the message says what was wrong.

@@ -6,13 +6,13 @@ import subprocess
 import time
 from typing import ContextManager, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
-from self_awareness_evaluation.live.breaking import stopped
+from self_awareness_evaluation.live.breaking import broken_by, stopped
 from self_awareness_evaluation.live.listeners import TopicListener, heard
 from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, WARM_UP_S, Processes,
                                                       await_condition, wait)
 from self_awareness_evaluation.simulated import default_faults
 from self_awareness_follow_me import induction
-from self_awareness_follow_me.effects import Crash, Effect, Intruder, Silence
+from self_awareness_follow_me.effects import Crash, Intruder, Silence
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import load_scenario
 
@@ -28,7 +28,6 @@ class FollowMe:
         """Start nothing yet.
 
         Args:
-            processes: to be started among.
             seed: of all starts; each has another one of its own.
             speed: in its usual one.
             respawn: roslaunch starts nodes again that end.
@@ -46,11 +45,7 @@ class FollowMe:
         """One topic of each component that publishes all the time."""
 
     def start(self) -> None:
-        """Start all components, and wait until they do what they do all the time.
-
-        Raises:
-            LiveError: one does not in time.
-        """
+        """Start all; wait until they do what they do all the time, or raise LiveError."""
         with heard(self._expected(self.topics)):
             self._running = self._processes.start(
                 'robot', 'roslaunch', '--wait', 'self_awareness', 'follow_me.launch',
@@ -97,7 +92,7 @@ class FollowMe:
             return self._silenced()
         if isinstance(effect, Intruder):
             return self._intruded(effect)
-        return _disturbed(name, effect)
+        return broken_by(induction.lasting(effect, name))
 
     @contextlib.contextmanager
     def _killed(self, effect: Crash) -> Iterator[float]:
@@ -140,9 +135,3 @@ class FollowMe:
     def _next_seed(self) -> int:
         self._seed += 1
         return self._seed
-
-
-@contextlib.contextmanager
-def _disturbed(name: str, effect: Effect) -> Iterator[float]:
-    with induction.lasting(effect, name):
-        yield time.time()

@@ -14,8 +14,7 @@ from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, LiveErro
                                                       becomes_true)
 from self_awareness_evaluation.live.rows import ERROR, Incident, Status
 
-MONITOR = '/self_awareness'
-"""The monitor's node."""
+MONITOR = '/self_awareness'  # the monitor's node
 
 QUIET_S = 3.0
 """The monitor has settled, and there is no alarm, for so long before the next fault [s]."""
@@ -51,11 +50,8 @@ class MonitorListener:
             return list(self._incidents)
 
     def quiet_for(self) -> float:
-        """Return for how long [s] there has been no alarm, and no settling, until now.
-
-        Raises:
-            LiveError: the monitor has gone silent.
-        """
+        """Return for how long [s] there has been no alarm, and no settling, until now; raise
+        LiveError if the monitor has gone silent."""
         now = time.monotonic()
         with self._lock:
             if now - self._heard_at > _NO_STATUS_S and self._statuses:
@@ -132,14 +128,8 @@ class TopicListener:
 
 @contextlib.contextmanager
 def heard(expected: Sequence[Tuple[str, str]]) -> Iterator[None]:
-    """Wait at the end of a with statement until nodes were heard on topics since its beginning.
-
-    Args:
-        expected: sources and topics.
-
-    Raises:
-        LiveError: one was not in time.
-    """
+    """Wait at the end of a with statement until sources were heard on topics since its begin, or
+    raise LiveError."""
     begin = time.time()
     with TopicListener([topic for _, topic in expected]) as listener:
         yield

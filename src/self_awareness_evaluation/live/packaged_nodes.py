@@ -7,36 +7,26 @@ from typing import Any, Dict, Tuple
 
 @dataclass(frozen=True)
 class Node:
-    """A program of a ROS package.
+    """A program of a ROS package."""
 
-    Args:
-        name: of the node, after the first slash.
-        package: of ROS.
-        program: of the package.
-        arguments: to the program; remappings and private parameters included.
-        topics: on which it publishes all the time; those of a nodelet come from its manager.
-        file: of drivers.write, the last argument; empty: none.
-        manager: node into which it loads a nodelet; empty: none.
-    """
-
-    name: str
-    package: str
-    program: str
-    arguments: Tuple[str, ...]
+    name: str  # of the node, after the first slash
+    package: str  # of ROS
+    program: str  # of the package
+    arguments: Tuple[str, ...]  # to the program; remappings and private parameters included
+    # On which it publishes all the time; those of a nodelet come from its manager.
     topics: Tuple[str, ...] = ()
-    file: str = ''
-    manager: str = ''
+    file: str = ''  # of drivers.write, the last argument; empty: none
+    manager: str = ''  # node into which it loads a nodelet; empty: none
 
 
-CAMERAS_HZ = {'front': 15.0, 'rear': 10.0}
-"""How often the cameras publish."""
+CAMERAS_HZ = {'front': 15.0, 'rear': 10.0}  # how often the cameras publish
 
+# The kinds of faults.
 KILL = 'killed (kill -9)'
 STOP = 'stopped (SIGSTOP, SIGCONT)'
 RESTART = 'ended and started again at once'
 HALF_RATE = 'publishes at half its rate'
 STARVE = 'four busy processes on every core'
-"""The kinds of faults."""
 
 
 def _driver(name: str, *topics: str) -> Node:

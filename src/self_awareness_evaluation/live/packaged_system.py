@@ -10,12 +10,12 @@ from typing import ContextManager, Dict, Iterator, List, Sequence
 import rospy
 
 from self_awareness_evaluation.live import drivers
-from self_awareness_evaluation.live.breaking import starved, stopped
+from self_awareness_evaluation.live.breaking import BUSY, broken_by, stopped
 from self_awareness_evaluation.live.listeners import heard
-from self_awareness_evaluation.live.master import unregister
 from self_awareness_evaluation.live.packaged_nodes import (CAMERAS_HZ, HALF_RATE, KILL, NODES,
                                                            PARAMETERS, RESTART, STOP, Node)
-from self_awareness_evaluation.live.processes import WARM_UP_S, Processes, wait
+from self_awareness_evaluation.live.processes import WARM_UP_S, Processes, unregister, wait
+from self_awareness_follow_me import induction
 
 _RATE = 'publish_rate'  # of image_publisher
 _SERVICE_WITHIN_S = 10.0
@@ -25,23 +25,14 @@ class PackagedSystem:
     """All NODES as processes; `rospy.init_node` has been called."""
 
     def __init__(self, folder: Path, processes: Processes) -> None:
-        """Start nothing yet.
-
-        Args:
-            folder: exists; for what drivers replay.
-            processes: to be started among.
-        """
+        """Start nothing yet; folder: for what drivers replay."""
         drivers.write(folder)
         self._folder = folder
         self._processes = processes
         self._running: Dict[str, subprocess.Popen] = {}
 
     def start(self) -> None:
-        """Start all nodes and wait until they have published on all their topics.
-
-        Raises:
-            LiveError: one has not in time.
-        """
+        """Start all; wait until they have published on all their topics, or raise LiveError."""
         for name, value in PARAMETERS.items():
             rospy.set_param(name, value)
         self._start(NODES)
@@ -63,7 +54,7 @@ class PackagedSystem:
             return stopped(self._running[node].pid)
         if kind == RESTART:
             return self._restarted(node)
-        return _halved(node) if kind == HALF_RATE else starved()
+        return _halved(node) if kind == HALF_RATE else broken_by(induction.starved(BUSY))
 
     @contextlib.contextmanager
     def _killed(self, name: str) -> Iterator[float]:

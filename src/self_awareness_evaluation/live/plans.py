@@ -14,14 +14,12 @@ from self_awareness_evaluation.live.follow_me import CRASH, HANG, FollowMe
 from self_awareness_evaluation.live.packaged_nodes import FAULTS
 from self_awareness_evaluation.live.packaged_system import PackagedSystem
 from self_awareness_evaluation.live.processes import Processes
-from self_awareness_evaluation.live.recordings import BAGS, EVENTS
 from self_awareness_evaluation.live.results import AT_RANDOM, HANGS
-from self_awareness_evaluation.live.session import Plan, Step
+from self_awareness_evaluation.live.session import BAGS, EVENTS, Plan, Step
 from self_awareness_evaluation.records import NORMAL, Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
 
-NORMAL_S = 20.0
-"""Of `live`: normal operation at the beginning of each round [s]."""
+NORMAL_S = 20.0  # of `live`: normal operation at the beginning of each round [s]
 
 FAULTS_S: Dict[str, float] = {
     'lat': 8.0, 'half:player': 8.0, 'double:gaze_control': 8.0, 'order': 8.0, 'unknown': 5.0,
@@ -33,16 +31,13 @@ UNDISTURBED = 'undisturbed'
 BURSTS = 'undisturbed, but for short bursts of foreign load'
 """Of `nodes`: the names of normal operation."""
 
-SPEED = 10.0
-"""Of `soak` and `recovery`: of the robot, in its usual one."""
+SPEED = 10.0  # of `soak` and `recovery`: of the robot, in its usual one
 
 SHORT_S, LONG_S = (0.2, 1.5), (4.0, 12.0)
 """At random: shortest and longest of the short hangs, which need not be found, and of all other
 faults [s]."""
 
-PAUSE_S = (5.0, 20.0)
-"""At random: least and most of normal operation between two faults [s]."""
-
+PAUSE_S = (5.0, 20.0)  # at random: least and most of normal operation between two faults [s]
 _BUDGET = 0.1  # of the soak: false alarms an hour that the limits allow
 _PIECE_S = 600.0  # of normal operation, so that little is lost if the session fails
 _QUIET_S, _QUIET_WITHIN_S = 10.0, 60.0  # after a fault of the packaged nodes
@@ -58,9 +53,7 @@ def live(given: argparse.Namespace, learning: Learning, _: Path, processes: Proc
 
     Args, as of all plans:
         given: the arguments of the command.
-        learning: how much is recorded to learn from.
-        folder: exists; for what the robot needs.
-        processes: to start programs among.
+        folder: for what the robot needs.
     """
     robot = FollowMe(processes, seed=0)
 
@@ -125,10 +118,6 @@ def drawn(possible: Sequence[str], seed: int) -> Iterator[Tuple[str, float, floa
     """Yield faults without an end, the same for the same seed.
 
     Each is its name, time of normal operation before it [s], and how long it lasts [s].
-
-    Args:
-        possible: their names.
-        seed: any.
     """
     chance = random.Random(f'{seed}/faults')
     hangs = [name for name in possible if name.startswith(f'{HANG}:')]
@@ -142,12 +131,8 @@ def drawn(possible: Sequence[str], seed: int) -> Iterator[Tuple[str, float, floa
 
 def _at_random(robot: FollowMe, given: argparse.Namespace, number: int = 1,
                crash_s: float = LONG_S[1]) -> Iterator[Step]:
-    """Yield faults at random, with normal operation between them, for some time.
-
-    Args:
-        number: of the round.
-        crash_s: a node that was killed is dead for so long at most [s].
-    """
+    """Yield faults at random, with normal operation between them, for some time; crash_s: a node
+    that was killed is dead for so long at most [s]."""
     until = time.monotonic() + 60.0 * given.minutes
     for name, after_s, lasts_s in drawn(robot.possible(), given.seed):
         left_s = until - time.monotonic()

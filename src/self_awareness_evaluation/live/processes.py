@@ -1,18 +1,22 @@
-"""The processes of a live session, each with its log, all ended together; and how time passes."""
+"""The processes of a live session and their master, all ended together; and how time passes."""
 from __future__ import annotations
 
+import contextlib
 import os
 import signal
 import socket
 import subprocess
 import time
 from pathlib import Path
-from typing import Callable, List
+from typing import Callable, Iterator, List, Sequence
+
+import rosgraph
+import rosnode
+import rospy
 
 from self_awareness import progress
 
-WARM_UP_S = 10.0
-"""So long after the start of a robot is no normal operation yet [s]."""
+WARM_UP_S = 10.0  # so long after the start of a robot is no normal operation yet [s]
 
 STARTED_WITHIN_S = 90.0
 """What is started, robot or monitor, has said something after so long at the latest [s]."""
@@ -45,11 +49,7 @@ def wait(seconds: float, what: str) -> None:
 
 
 def await_condition(what: str, condition: Callable[[], bool], within_s: float) -> None:
-    """Wait until a condition holds.
-
-    Raises:
-        LiveError: it still does not after the limit [s].
-    """
+    """Wait until a condition holds; raise LiveError if it does not before the limit [s]."""
     if not becomes_true(condition, within_s):
         raise LiveError(f'not within {within_s:g} s: {what}')
 
@@ -90,11 +90,7 @@ class Processes:
         return process
 
     def run(self, log: str, within_s: float, *command: str) -> None:
-        """Run a program to its end.
-
-        Raises:
-            LiveError: it fails, or still runs after the limit [s].
-        """
+        """Run a program; raise LiveError if it fails, or still runs after the limit [s]."""
         process = self.start(log, *command)
         try:
             code: object = process.wait(within_s)
@@ -121,10 +117,8 @@ class Processes:
 
 
 def _signal(process: subprocess.Popen, number: int) -> None:
-    try:
+    with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, number)
-    except ProcessLookupError:
-        pass
 
 
 def _group_runs(process: subprocess.Popen) -> bool:
@@ -134,3 +128,44 @@ def _group_runs(process: subprocess.Popen) -> bool:
     except ProcessLookupError:
         return False
     return True
+
+
+@contextlib.contextmanager
+def own_master(folder: Path, node: str, pinned: Sequence[str] = ()) -> Iterator[Processes]:
+    """Start a master on a free port of the loopback interface, and make this process a node of it;
+    nothing of it runs on afterwards.
+
+    Args:
+        folder: for the logs of all processes that are started.
+        node: what this process is called.
+        pinned: command that runs the master on some cores; empty: on any.
+    """
+    port = free_port()
+    os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1',
+                      ROS_LOG_DIR=str(folder / 'log'))
+    os.environ.pop('ROS_HOSTNAME', None)
+    with Processes(folder) as processes:
+        processes.start('roscore', *pinned, 'roscore', '-p', str(port))
+        await_condition('the master answers', rosgraph.is_master_online, STARTED_WITHIN_S)
+        # What it logs would be heard by the monitor.
+        rospy.init_node(node, disable_signals=True, disable_rosout=True)
+        try:
+            yield processes
+        finally:
+            rospy.signal_shutdown('the session is over')
+
+
+def unregister(ended: Sequence[str]) -> None:
+    """Take back what nodes that have ended left at the master.
+
+    When such a node is started again, the master has the one before shut down, at a port that
+    another node may have by then.
+
+    Raises:
+        LiveError: the master does not answer.
+    """
+    try:
+        left = sorted(set(rosnode.get_node_names()) & set(ended))
+        rosnode.cleanup_master_blacklist(rosgraph.Master('/evaluate'), left)
+    except (rosnode.ROSNodeException, rosgraph.MasterException, OSError) as error:
+        raise LiveError(f'the master does not answer any more: {error}') from error

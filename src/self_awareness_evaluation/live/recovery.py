@@ -18,8 +18,7 @@ from self_awareness_evaluation.live.processes import becomes_true
 from self_awareness_evaluation.live.rows import RESTARTED, Row
 from self_awareness_follow_me.induction import process_id
 
-DELAY_S = 1.0
-"""Of the rules: an alarm stands for so long before a node is restarted [s]."""
+DELAY_S = 1.0  # of the rules: an alarm stands for so long before a node is restarted [s]
 
 HEALED_S = max(DELAY_S, SHORTEST_HEALING_S) + 1.0
 """After so long without an alarm, the next fault is a new one, and not what the last step did not
@@ -31,11 +30,7 @@ _MOST_STEPS = history.MOST  # more than faults: what is wrong is to be seen
 
 
 def command(rules: Path, components: Sequence[str]) -> List[str]:
-    """Write rules that restart every one of these components that has died; return the command.
-
-    Raises:
-        OSError: they cannot be written.
-    """
+    """Write rules that restart every one of these components that has died; return the command."""
     rules.write_text(yaml.safe_dump({
         'delay': DELAY_S, 'grace': _GRACE_S, 'limit': _MOST_STEPS, 'limit_of_all': _MOST_STEPS,
         'rules': [{'component': f'/{name}', 'kinds': ['silent', 'never came'],
@@ -75,13 +70,13 @@ def returns(node: str, topic: str, within_s: float) -> Callable[[], Optional[flo
     process = process_of(node, process_id(node))
 
     def wait() -> Optional[float]:
-        ended: List[float] = []  # when its process was seen to have ended
+        until = time.monotonic() + within_s
         with TopicListener([topic]) as listener:
-            def is_back() -> bool:
-                if not ended and not process.runs():
-                    ended.append(time.time())
-                return bool(ended) and listener.last(node, topic) > ended[0]
-
-            return listener.last(node, topic) if becomes_true(is_back, within_s) else None
+            if not becomes_true(lambda: not process.runs(), within_s):
+                return None
+            ended = time.time()
+            is_back = becomes_true(lambda: listener.last(node, topic) > ended,
+                                   until - time.monotonic())
+            return listener.last(node, topic) if is_back else None
 
     return wait

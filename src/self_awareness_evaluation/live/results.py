@@ -13,13 +13,10 @@ from self_awareness_evaluation.live.follow_me import CRASH, HANG
 from self_awareness_evaluation.live.recovery import DELAY_S
 from self_awareness_evaluation.live.rows import MONITOR, RESTARTED, Row
 from self_awareness_evaluation.rows import AFTERMATH_S
-from self_awareness_evaluation.tables import part, seconds, table
+from self_awareness_evaluation.tables import of_all, seconds, table
 
-HANGS, AT_RANDOM = 1, 2
-"""Rounds of a recovery: a node hangs again and again; faults at random."""
-
-MUST_BE_FOUND_S = 2.0
-"""A fault that lasts for longer is missed if there is no alarm [s]."""
+HANGS, AT_RANDOM = 1, 2  # rounds of a recovery: a node hangs again and again; faults at random
+MUST_BE_FOUND_S = 2.0  # a fault that lasts for longer is missed if there is no alarm [s]
 
 BACK_WITHIN_S = 5.0
 """From the alarm to when a node that hangs is heard again, besides the delay of the rules [s]."""
@@ -28,8 +25,7 @@ _MOST_SLOPE = 1.0  # of resident memory that counts as flat [MB an hour]
 _FILLED_S = 300.0  # until then memory may grow: the flight recorder fills its five minutes
 _LEAST_S = 300.0  # a slope of less is one of chance
 
-Told = Tuple[List[str], List[str]]
-"""The lines of a page, and what was not as it should be."""
+Told = Tuple[List[str], List[str]]  # the lines of a page, and what was not as it should be
 
 
 def of_faults(rows: Sequence[Row]) -> Told:
@@ -43,7 +39,7 @@ def of_faults(rows: Sequence[Row]) -> Told:
                        if fault not in raised)
     return [f'- faults: alarms {_found([row.latency_s for row in faults])}; WARN or alarm '
             f'{_found([row.suspicion_s for row in faults])}; the right node first '
-            f'{part((sum(named), len(named)), in_percent=False)}'
+            f'{of_all((sum(named), len(named)))}'
             + (f'; never an alarm: {missed}' if missed else ''),
             *(_of_normal(kind, [row for row in quiet if row.fault == kind])
               for kind in dict.fromkeys(row.fault for row in quiet)),

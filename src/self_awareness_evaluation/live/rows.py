@@ -4,46 +4,31 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
+from typing import List, NamedTuple, Optional, Sequence, Tuple
 
-MONITOR = 'evidence'
-"""The system that listened: the monitor, by its detector."""
+MONITOR = 'evidence'  # the system that listened: the monitor, by its detector
 
 RESTARTED = 'restarted by the recovery'
 """The fault of a row that tells of a node that the recovery has restarted."""
 
-ERROR, WARN = 2, 1
-"""Levels of a status that are an alarm, and a suspicion."""
-
+ERROR, WARN = 2, 1  # levels of a status that are an alarm, and a suspicion
 _SEPARATOR = '; '  # between what was said of one alarm or suspicion, and of the next one
 _RECORDED = '; events in '  # before the file of the flight recorder, which only this machine has
 
 
 @dataclass(frozen=True)
 class Status:
-    """What the monitor says of a window.
+    """What the monitor says of a window."""
 
-    Args:
-        stamp: end of the window [s since 1970].
-        level: that of the message SelfAwareness.
-        settling: whether it is too early for an alarm.
-        suspects: sources, the most likely first, each once.
-        message: what is abnormal, in words.
-        component: that is to blame; empty: none.
-        kind: what is wrong with it.
-        alarm: id of the alarm or suspicion.
-        events: in the window.
-    """
-
-    stamp: float
-    level: int
-    settling: bool
-    suspects: Tuple[str, ...] = ()
-    message: str = ''
-    component: str = ''
-    kind: str = ''
-    alarm: int = 0
-    events: int = 0
+    stamp: float  # end of the window [s since 1970]
+    level: int  # that of the message SelfAwareness
+    settling: bool  # whether it is too early for an alarm
+    suspects: Tuple[str, ...] = ()  # sources, the most likely first, each once
+    message: str = ''  # what is abnormal, in words
+    component: str = ''  # that is to blame; empty: none
+    kind: str = ''  # what is wrong with it
+    alarm: int = 0  # id of the alarm or suspicion
+    events: int = 0  # in the window
 
     @property
     def words(self) -> str:
@@ -65,65 +50,48 @@ class Row:
     """A stretch of time; the columns of the CSV files.
 
     All after `load` may be None: where that does not apply, never came, or was not measured.
-
-    Args:
-        fault: its name; of normal operation: what that is called; or RESTARTED.
-        node: that is broken, several with a space between; empty: none, or the whole machine.
-        system: that judged.
-        round: number, from 1 on.
-        onset: [s since 1970].
-        lasted_s: time until it was undone; of normal operation: time that was judged.
-        void: why a fault does not count; empty: it does.
-        said: of the alarm of a fault, in the monitor's words; of normal operation: each alarm
-            and suspicion as it began.
-        note: what did not go as planned.
-        load: the machine's load average of the last minute at the onset.
-        alarms: of normal operation: how often an alarm (ERROR) was raised.
-        suspicions: of normal operation: how often there was a suspicion (WARN) that did not
-            become an alarm.
-        watched, components: of normal operation: how many the model watches, and knows.
-        suspicion_s, latency_s: from the onset to the first WARN or ERROR, and to the first ERROR.
-        blamed_s: from the onset to the first ERROR that blames the node.
-        first: whether the node is the first suspect of the first ERROR.
-        end_level, end_kind, end_component: what was said when the fault was undone.
-        recovered_s: from the onset to when the node was as before.
-        cleared_s: from then to the end of the alarm; 0: there was none then; inf: it stood to
-            the end of the wait.
-        incident_began_s, incident_ended_s: from the onset to when the alarm's incident was
-            opened, and to its last alarm so far; negative: it is one with an earlier fault.
-        back_s: from blamed_s to when a new process of the node was heard, by the recovery.
-        events: that the monitor judged.
-        memory_mb, threads, files: resident memory of the monitor [MB], its threads, and its open
-            files and connections, at the end.
     """
 
-    fault: str
-    node: str
-    system: str = MONITOR
-    round: int = 1
-    onset: float = 0.0
-    lasted_s: float = 0.0
-    void: str = ''
+    fault: str  # its name; of normal operation: what that is called; or RESTARTED
+    node: str  # that is broken, several with a space between; empty: none, or the whole machine
+    system: str = MONITOR  # that judged
+    round: int = 1  # number, from 1 on
+    onset: float = 0.0  # [s since 1970]
+    lasted_s: float = 0.0  # time until it was undone; of normal operation: time that was judged
+    void: str = ''  # why a fault does not count; empty: it does
+    # Of the alarm of a fault, in the monitor's words; of normal operation: each alarm and
+    # suspicion as it began.
     said: str = ''
-    note: str = ''
-    load: float = 0.0
-    alarms: Optional[int] = None
+    note: str = ''  # what did not go as planned
+    load: float = 0.0  # the machine's load average of the last minute at the onset
+    alarms: Optional[int] = None  # of normal operation: how often an alarm (ERROR) was raised
+    # Of normal operation: how often there was a suspicion (WARN) that did not become an alarm.
     suspicions: Optional[int] = None
+    # Of normal operation: how many the model watches, and knows.
     watched: Optional[int] = None
     components: Optional[int] = None
+    # From the onset to the first WARN or ERROR, and to the first ERROR.
     suspicion_s: Optional[float] = None
     latency_s: Optional[float] = None
-    blamed_s: Optional[float] = None
-    first: Optional[bool] = None
+    blamed_s: Optional[float] = None  # from the onset to the first ERROR that blames the node
+    first: Optional[bool] = None  # whether the node is the first suspect of the first ERROR
+    # What was said when the fault was undone.
     end_level: Optional[int] = None
     end_kind: Optional[str] = None
     end_component: Optional[str] = None
-    recovered_s: Optional[float] = None
+    recovered_s: Optional[float] = None  # from the onset to when the node was as before
+    # From then to the end of the alarm; 0: there was none then; inf: it stood to the end of the
+    # wait.
     cleared_s: Optional[float] = None
+    # From the onset to when the alarm's incident was opened, and to its last alarm so far;
+    # negative: it is one with an earlier fault.
     incident_began_s: Optional[float] = None
     incident_ended_s: Optional[float] = None
+    # From blamed_s to when a new process of the node was heard, by the recovery.
     back_s: Optional[float] = None
-    events: Optional[int] = None
+    events: Optional[int] = None  # that the monitor judged
+    # Resident memory of the monitor [MB], its threads, and its open files and connections, at the
+    # end.
     memory_mb: Optional[float] = None
     threads: Optional[int] = None
     files: Optional[int] = None
@@ -170,7 +138,8 @@ def measure(row: Row, statuses: Sequence[Status], incidents: Sequence[Incident] 
     if row.is_normal:
         begun = _begun(before, inside)
         return replace(
-            row, lasted_s=row.lasted_s * _share(inside, lambda status: not status.settling),
+            row, lasted_s=row.lasted_s
+            * (sum(not status.settling for status in inside) / max(1, len(inside))),
             alarms=sum(status.level >= ERROR for status in begun),
             suspicions=sum(status.level == WARN for status in begun),
             said=_SEPARATOR.join(f'{"ERROR" if status.level >= ERROR else "WARN"}: {status.words}'
@@ -238,7 +207,3 @@ def _cleared(recovered: float, statuses: Sequence[Status]) -> float:
     if not standing:
         return 0.0
     return math.inf if after[-1].level >= ERROR else standing[-1].stamp - recovered
-
-
-def _share(statuses: Sequence[Status], is_so: Callable[[Status], bool]) -> float:
-    return sum(map(is_so, statuses)) / max(1, len(statuses))

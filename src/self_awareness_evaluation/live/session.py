@@ -3,99 +3,92 @@ from __future__ import annotations
 
 import os
 import time
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import (Any, Callable, ContextManager, Dict, Iterator, List, Optional, Sequence,
-                    Tuple)
+from typing import (Any, Callable, ContextManager, Dict, Iterator, List, Optional, Protocol,
+                    Sequence, Tuple)
 
 import yaml
 
 from self_awareness import TrainedModel
 from self_awareness.calibration.limits import BUDGET
-from self_awareness_evaluation.live.breaking import nothing
+from self_awareness.training.robot_graph import graph_file
+from self_awareness_evaluation.live.breaking import broken_by
 from self_awareness_evaluation.live.listeners import MONITOR, MonitorListener
 from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, LiveError, Processes,
                                                       await_condition, becomes_true, say, wait)
-from self_awareness_evaluation.live.recordings import System, learn
 from self_awareness_evaluation.live.rows import Row, measure
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
 from self_awareness_follow_me.induction import process_id
 
+APART_S = 70.0
+"""From the end of one bag to the beginning of the next one [s].
+
+Bags that follow each other within a minute count as one start."""
+
+BAGS, EVENTS = 'bags', 'events'  # what is recorded: whole messages, or event logs
+_TRAINING, _CALIBRATION, _MODEL = 'training', 'calibration', 'learned.model'  # names of files
+_WITHIN_S = 900.0
 _STATUS_WITHIN_S = 5.0  # of the last window of a stretch
 _CLOCK_STEP_S = 0.05  # a clock that moved by more than this was set
 
 
+class System(Protocol):
+    """A robot: start() waits until it is in normal operation, or raises LiveError."""
+
+    def start(self) -> None:
+        """Start it."""
+
+    def end(self) -> None:
+        """End it."""
+
+
 @dataclass(frozen=True)
 class Step:
-    """A fault that is to come, or normal operation.
+    """A fault that is to come, or normal operation."""
 
-    Args:
-        fault: its name; of normal operation: what it is called.
-        lasts_s: from the onset to when it is undone, at most [s].
-        culprits: sources to blame; empty: none, or the whole machine.
-        broken: induces it, hands out its onset [s since 1970], and undoes it.
-        is_normal: nothing is wrong.
-        round: number, from 1 on.
-        reset: the monitor's ~reset is called before.
-        returned: waits instead until the node is back by itself; returns when it was heard
-            [s since 1970], None: it was not in `lasts_s`.
-    """
-
-    fault: str
-    lasts_s: float
-    culprits: Tuple[str, ...] = ()
-    broken: Callable[[], ContextManager[float]] = nothing
-    is_normal: bool = False
-    round: int = 1
-    reset: bool = False
+    fault: str  # its name; of normal operation: what it is called
+    lasts_s: float  # from the onset to when it is undone, at most [s]
+    culprits: Tuple[str, ...] = ()  # sources to blame; empty: none, or the whole machine
+    # Induces it, hands out its onset [s since 1970], and undoes it.
+    broken: Callable[[], ContextManager[float]] = lambda: broken_by(nullcontext())
+    is_normal: bool = False  # nothing is wrong
+    round: int = 1  # number, from 1 on
+    reset: bool = False  # the monitor's ~reset is called before
+    # Waits instead until the node is back by itself; returns when it was heard [s since 1970],
+    # None: it was not in `lasts_s`.
     returned: Optional[Callable[[], Optional[float]]] = None
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What a session does.
+    """What a session does."""
 
-    Args:
-        system: the robot.
-        what: is recorded of it, to learn from (recordings).
-        learning: how much.
-        steps: drawn one after the other, while the session goes on.
-        quiet_s: a fault is over when there has been no alarm for so long after it was undone [s],
-            AFTERMATH_S or more.
-        quiet_within_s: an alarm that stands for longer does not clear [s]; 0: nobody waits.
-        budget: false alarms an hour that the limits allow.
-        beside: commands that run beside the monitor.
-        also: called after every step, returns further rows.
-    """
-
-    system: System
-    what: str
-    learning: Learning
-    steps: Iterator[Step]
+    system: System  # the robot
+    what: str  # is recorded of it, to learn from (recordings)
+    learning: Learning  # how much
+    steps: Iterator[Step]  # drawn one after the other, while the session goes on
+    # A fault is over when there has been no alarm for so long after it was undone [s], AFTERMATH_S
+    # or more.
     quiet_s: float
-    quiet_within_s: float
-    budget: float = BUDGET
-    beside: Sequence[Sequence[str]] = ()
-    also: Callable[[], List[Row]] = list
+    quiet_within_s: float  # an alarm that stands for longer does not clear [s]; 0: nobody waits
+    budget: float = BUDGET  # false alarms an hour that the limits allow
+    beside: Sequence[Sequence[str]] = ()  # commands that run beside the monitor
+    also: Callable[[], List[Row]] = list  # called after every step, returns further rows
 
 
 def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], None]) -> None:
-    """Run a session.
+    """Run a session; told: gets every row as soon as it is measured.
 
     The master runs, and this process is a node.
-
-    Args:
-        plan: what to do.
-        folder: exists; for recordings, the model and logs.
-        processes: to start programs among.
-        told: gets every row as soon as it is measured.
 
     Raises:
         LiveError: a program failed, or something does not happen in time.
         InduceError: a fault cannot be induced.
     """
-    model = learn(plan.system, plan.what, plan.learning, plan.budget, folder, processes)
+    model = _learn(plan, folder, processes)
     plan.system.start()
     monitor = MonitorListener()
     config = folder / 'monitor.yaml'
@@ -117,14 +110,57 @@ def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], No
     plan.system.end()
 
 
-class Walk:
-    """Takes step after step beside a monitor.
+def _learn(plan: Plan, folder: Path, processes: Processes) -> Path:
+    """Record starts of the robot by record.launch, train and calibrate; return the model.
 
-    Args:
-        plan: of the session.
-        monitor: that is listened to.
-        promised: what the model says of itself, by the columns of rows of normal operation.
+    Recordings that the folder holds are used again.
     """
+    ended = -APART_S  # the last one, by time.monotonic()
+    for prefix, number, length_s in (
+            (_TRAINING, plan.learning.starts, plan.learning.training_s),
+            (_CALIBRATION, plan.learning.calibrations, plan.learning.calibration_s)):
+        for name in (f'{prefix}_{turn}' for turn in range(1, number + 1)):
+            if not _recorded(folder, name):
+                not_before = ended + APART_S if plan.what == BAGS else ended
+                ended = _record(plan, folder, name, length_s, not_before, processes)
+    model = str(folder / _MODEL)
+    for arguments in (['train', *_recorded(folder, _TRAINING)],
+                      ['calibrate', '--model', model, '--normal',
+                       *_recorded(folder, _CALIBRATION), '--budget', str(plan.budget)]):
+        say(arguments[0])
+        processes.run(arguments[0], _WITHIN_S, 'rosrun', 'self_awareness', *arguments, '-o', model)
+    return folder / _MODEL
+
+
+def _record(plan: Plan, folder: Path, name: str, length_s: float, not_before: float,
+            processes: Processes) -> float:
+    """Record a start of the robot; return when that ended, by time.monotonic()."""
+    plan.system.start()
+    if not_before > time.monotonic():
+        wait(not_before - time.monotonic(), 'so that this start counts as another one')
+    recorder = processes.start(
+        f'record_{name}', 'roslaunch', '--wait', 'self_awareness', 'record.launch',
+        f'what:={plan.what}', f'output:={folder / name}')
+    await_condition(f'{name} is written', lambda: any(folder.glob(f'{name}_*.bag.active')),
+                    STARTED_WITHIN_S)
+    wait(length_s, f'recording {name}')
+    processes.end(recorder)
+    ended = time.monotonic()
+    plan.system.end()
+    found = _recorded(folder, name)
+    if not found or (plan.what == BAGS and not Path(graph_file(found[0])).exists()):
+        raise LiveError(f'{name}: record.launch has written no recording with its graph, see '
+                        f'{folder}/record_{name}.log')
+    return ended
+
+
+def _recorded(folder: Path, prefix: str) -> List[str]:
+    return sorted(str(path) for path in folder.glob(f'{prefix}_*.bag'))
+
+
+class Walk:
+    """Takes step after step beside a monitor; promised: what the model says of itself, by the
+    columns of rows of normal operation."""
 
     def __init__(self, plan: Plan, monitor: MonitorListener,
                  promised: Dict[str, Any]) -> None:
@@ -145,7 +181,9 @@ class Walk:
             end = time.time()
             set_s = end - time.monotonic() - ahead_s
         row = Row(step.fault, ' '.join(source[1:] for source in step.culprits), round=step.round,
-                  onset=onset, lasted_s=end - onset, note=note, load=load, void=_clock(set_s))
+                  onset=onset, lasted_s=end - onset, note=note, load=load)
+        if abs(set_s) > _CLOCK_STEP_S:
+            row = replace(row, void=f"the machine's clock was set by {set_s:.2f} s")
         if step.is_normal:
             row = replace(row, alarms=0, **self._promised)
             self._normal_since = None
@@ -181,11 +219,6 @@ def _passed(step: Step) -> Optional[float]:
     return step.returned()
 
 
-def _clock(set_s: float) -> str:
-    """Return why a stretch does not count in which the machine's clock was set."""
-    return f"the machine's clock was set by {set_s:.2f} s" if abs(set_s) > _CLOCK_STEP_S else ''
-
-
 def _promised(path: Path) -> Dict[str, Any]:
     """Return what the model says of itself, by the columns of a row."""
     model = TrainedModel.load(str(path))
@@ -196,11 +229,7 @@ def _promised(path: Path) -> Dict[str, Any]:
 
 
 def used(pid: int) -> Dict[str, Any]:
-    """Return what a process uses now, by the columns of a row.
-
-    Raises:
-        LiveError: it has ended.
-    """
+    """Return what a process uses now, by the columns of a row; raise LiveError if it has ended."""
     process = Path('/proc') / str(pid)
     try:
         fields = dict(line.split(':', 1) for line in (process / 'status').read_text().splitlines())

@@ -4,9 +4,9 @@ from __future__ import annotations
 from typing import Dict, List, Sequence, Tuple
 
 from self_awareness import Tuning
+from self_awareness_evaluation.families.faults import (CRASH, HALF_RATE, LATE, MISSES, RESTART,
+                                                       SILENT, STARVED)
 from self_awareness_evaluation.families.protocol import DEATH, SELDOM
-from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, RESTART,
-                                                      SILENT, STARVED)
 from self_awareness_evaluation.figures import grouped
 from self_awareness_evaluation.outages import OUTAGE
 from self_awareness_evaluation.rows import Row

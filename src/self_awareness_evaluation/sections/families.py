@@ -4,38 +4,25 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Dict, List, Sequence
 
+from self_awareness.reporting.text import number_of
+from self_awareness_evaluation.families.faults import CRASH, FLOOD, LATE, OTHER, RESTART
 from self_awareness_evaluation.families.kinds import FAMILIES
-from self_awareness_evaluation.families.protocol import DEATH, KINDS, NEVER, SELDOM
-from self_awareness_evaluation.families.robot import (CRASH, FLOOD, HALF_RATE, LATE, LOAD, LOSSES,
-                                                      MISSES, OLD, OTHER, RESTART, SILENT, SLOWER,
-                                                      STALL, STARVED, STOP)
+from self_awareness_evaluation.families.protocol import KINDS, NEVER, TITLES
 from self_awareness_evaluation.figures import WITHIN_S, Found, Quiet, grouped, normal, of_fault
-from self_awareness_evaluation.robots import family_of
 from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
 from self_awareness_evaluation.tables import (NONE, interval, number, part, percent, rate, seconds,
-                                              shares, table)
+                                              table)
 
 NAME = 'families'
-TITLE = 'Robots of other kinds'
-"""Above the section, on each page."""
+TITLE = 'Robots of other kinds'  # above the section, on each page
 
 ALL = 'all'
-
-TITLES: Dict[str, str] = {
-    CRASH: 'crashes', HALF_RATE: 'half rate', SLOWER: '0.7 of the rate',
-    LATE: 'late answers', DEATH: 'deaths when asked', SELDOM: 'deaths of who speaks seldom',
-    MISSES: 'inputs missed now and then',
-    STARVED: 'starved CPU', SILENT: 'everything silent', RESTART: 'restarts',
-    STALL: 'a stall follows a crash', LOAD: 'load follows a crash',
-    STOP: 'others stop after a crash', OLD: 'stamps are 3 s older',
-    LOSSES: '30 % of the messages lost', FLOOD: 'log lines without end',
-    OTHER: 'no transform, failed goals, an error (WARN)', NEVER: 'no latched message (WARN)'}
-"""Kinds of faults as tables call them."""
 
 _SUSPICIONS = (OTHER, NEVER)  # that are no alarms
 
 _MOST_SOURCES = 2
+_WITHIN = ' / '.join(f'{each:g}' for each in WITHIN_S)
 
 
 def section(rows: Sequence[Row]) -> Section:
@@ -57,8 +44,7 @@ def section(rows: Sequence[Row]) -> Section:
 
 def started(learning: str) -> str:
     """Return what was learned from in two words."""
-    starts = learning.partition(' ')[0]
-    return '1 start' if starts == '1' else f'{starts} starts'
+    return number_of(int(learning.partition(' ')[0]), 'start')
 
 
 def _results(by_learning: Dict[str, List[Row]]) -> List[str]:
@@ -82,7 +68,7 @@ def _of_families(families: Sequence[str], by_learning: Dict[str, List[Row]]) -> 
     first, last = next(iter(by_learning)), list(by_learning)[-1]
     kinds = [kind for kind in KINDS if kind not in (CRASH, RESTART, FLOOD, *_SUSPICIONS)]
     head = ['family', *(f'false alarms/h, {started(each)}' for each in by_learning),
-            'alarm stands', 'WARN/h', f'crashes, within {_within()} s',
+            'alarm stands', 'WARN/h', f'crashes, within {_WITHIN} s',
             *(f'{TITLES[kind]}, {started(last)}' if kind == LATE else TITLES[kind]
               for kind in kinds), 'alarms after a restart', 'watched', 'false alarms from']
     body = []
@@ -116,7 +102,7 @@ def _pooled(rows: Sequence[Row]) -> List[str]:
             _after(of_subject)])
     return table(['system', 'learned from', 'budget', 'false alarms/h', 'promised',
                   'robots within the promise', 'WARN/h', 'watched',
-                  f'crashes, within {_within()} s',
+                  f'crashes, within {_WITHIN} s',
                   *(TITLES[kind] for kind in KINDS if kind not in (CRASH, RESTART)),
                   'alarms after a restart'], body)
 
@@ -128,16 +114,13 @@ def _of_kind(rows: Sequence[Row], kind: str) -> Found:
 
 
 def _family(row: Row) -> str:
-    return family_of(row.subject.robot)
-
-
-def _within() -> str:
-    return ' / '.join(f'{each:g}' for each in WITHIN_S)
+    return row.subject.family
 
 
 def _crashes(rows: Sequence[Row]) -> str:
     found = Found.of(of_fault(rows, CRASH))
-    return f'{shares(found, WITHIN_S)}{_blame(found)}' if found.records else NONE
+    told = ' / '.join(f'{100.0 * found.share(each):.0f}' for each in WITHIN_S)
+    return f'{told} %{_blame(found)}' if found.records else NONE
 
 
 def _found(rows: Sequence[Row], kind: str) -> str:

@@ -1,9 +1,9 @@
 """What the pages say of the simulated follow-me robot."""
 from __future__ import annotations
 
-from typing import Callable, Dict, List, Sequence, Tuple
+from typing import Callable, Dict, List, Sequence
 
-from self_awareness_evaluation.figures import Found, Quiet, grouped, normal, of_fault, quantile
+from self_awareness_evaluation.figures import Found, Quiet, grouped, median, normal, of_fault
 from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
@@ -12,8 +12,7 @@ from self_awareness_evaluation.tables import (NONE, interval, number, part, perc
                                               share, table)
 
 NAME = 'simulated'
-TITLE = 'The simulated robot'
-"""Above the section, on each page."""
+TITLE = 'The simulated robot'  # above the section, on each page
 
 FALSE_ALARMS = 'false alarms an hour (95 %)'
 EVERY_CRASH = 'every crash'
@@ -90,15 +89,12 @@ def _noticed(by_system: _BySystem) -> List[str]:
     for kind, within_s in _NOTICED_S.items():
         found = [Found.of(of_fault(rows, kind)) for rows in by_system.values()]
         if found[0].records:
+            in_time = [sum(each_s <= within_s for each_s in each.noticed_s) for each in found]
             body.append([kind, f'{within_s:g} s', *(
-                f'{part(_in_time(each, within_s))}, {seconds(quantile(each.noticed_s, 0.5))}'
-                for each in found)])
+                f'{part((number_of, each.records))}, {seconds(median(each.noticed_s))}'
+                for number_of, each in zip(in_time, found))])
     return ['WARN or alarm in the time that is aimed at, and the median time to it.', '',
             *table(['fault', 'within', *by_system], body)]
-
-
-def _in_time(found: Found, within_s: float) -> Tuple[int, int]:
-    return sum(each <= within_s for each in found.noticed_s), found.records
 
 
 def _rows(by_system: _BySystem, cell: Callable[[Found], str]) -> List[List[str]]:

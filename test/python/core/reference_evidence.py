@@ -27,8 +27,7 @@ RARE_MISSES = 0.02
 MOST_SURPRISE = 6.0
 LEAST_DEVIATION = 0.5
 USUAL = 0.9
-LEAST_EFFECT = (5e6, 0.02)
-"""On delays, by default: [ns], and the share of the period."""
+LEAST_EFFECT = (5e6, 0.02)  # on delays, by default: [ns], and the share of the period
 LEAST_PACE = 8.0
 OTHER_PACES = {'slower': {2: 1 / 2, 4: 1 / 2},
                'faster': {2: 1 / 3, 4: 1 / 3, **{bins: 1 / 132 for bins in range(5, 49)}}}

@@ -7,20 +7,17 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from reference_evidence import (BETWEEN_STALLS, LABELS, LONGEST_STALL_OF_TRAINING, MS, SECOND,
                                 SHORTEST_STALL, Event, ReferenceModel, Track, is_mode)
 
-DRIFT = 1.0
-"""What every delay takes from its sum."""
+DRIFT = 1.0  # what every delay takes from its sum
 ARMING_EVENTS = 30
 MOST_FAILURES = 10
 USUAL_SURPRISE = 0.3
 GONE_GAPS = 5
-LATE = 1.2
-"""Mean gaps."""
+LATE = 1.2  # mean gaps
 MOST_BEHIND = 2.0 * SECOND
 MOST_EVIDENCE = 200.0
 MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
-NEWS = 3
-"""Windows."""
+NEWS = 3  # windows
 START_TIME = 60 * SECOND
 REGIME = 120 * SECOND
 LONGEST_STALL = 700 * MS

@@ -20,8 +20,7 @@ from self_awareness import (Calibrator, DetectorParameters, EventType, EvidenceM
 
 HOUR = 3600 * SECOND
 DAY = 24 * HOUR
-END_OF_TIME = 2 ** 32 * SECOND
-"""ROS time has 32 bits for its seconds: until 2106."""
+END_OF_TIME = 2 ** 32 * SECOND  # ROS time has 32 bits for its seconds: until 2106
 LETTERS = 'ABCD'
 
 _BEGINNINGS = (0, 1, 1_600_000_000 * SECOND, 2 ** 31 * SECOND - 2 * SECOND,
@@ -35,8 +34,7 @@ WINDOW = 100 * MS
 BIN = 10 * MS
 SETTLE = 5 * SECOND
 THRESHOLD = 0.4
-MODES = {'C': 'x', 'D': 'y'}
-"""What tells a mode in place of an event type."""
+MODES = {'C': 'x', 'D': 'y'}  # what tells a mode in place of an event type
 KINDS = [*LETTERS, *MODES.values()]
 TYPES = [EventType('', f'/{kind}', f'[mode: {kind}]' if is_mode(kind) else '') for kind in KINDS]
 
@@ -77,8 +75,7 @@ def long_recordings(draw: Callable[..., Any]) -> List[Event]:
 
 
 SEVERAL = st.lists(recordings(), min_size=1, max_size=3)
-MUCH = st.lists(long_recordings(), min_size=1, max_size=2)
-"""Enough for something to be watched."""
+MUCH = st.lists(long_recordings(), min_size=1, max_size=2)  # enough for something to be watched
 
 # The same examples in every run: a test that fails does so for everybody.
 examples = settings(max_examples=30, deadline=None, derandomize=True, database=None,

@@ -8,7 +8,7 @@ import numpy as np
 
 from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.windowed_events import WindowedEvents
+from self_awareness_evaluation.records import WindowedEvents
 
 LASER = EventType('/player', '/scan', 'sensor_msgs/LaserScan')
 BATTERY = EventType('/power', '/battery', 'sensor_msgs/BatteryState')

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, List
+from typing import Any, List, Optional
 
 import pytest
 
@@ -26,34 +26,30 @@ def rows_of(alarms: List[Span], monkeypatch: pytest.MonkeyPatch) -> List[Row]:
              Case('healthy', normal, normal, 'a.bag', None, ((0.0, 1e9),)))
     raised = [SystemAlarm(FIRST + round(start * SECOND_NS), FIRST + round(end * SECOND_NS), True,
                           [], culprit='/a') for start, end in alarms]
-    monkeypatch.setattr(outages, 'SYSTEMS',
-                        {'oracle': lambda *_: JudgedCase(raised, [], FIRST, 100.0, 3)})
+    said = JudgedCase(raised, [], FIRST, FIRST + 100 * SECOND_NS, 3)
+    monkeypatch.setattr(outages, 'SYSTEMS', {'oracle': lambda *_: said})
     unit = Unit(lambda _: [], REAL, 'a case', (Variant('oracle'),))
     return [row for case in cases for row in outages.rows(case, Path(), unit)]
 
 
-def test_an_alarm_in_the_outage_finds_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    normal, outage, healthy = rows_of([(5.0, 12.0), (50.5, 72.0)], monkeypatch)
+@pytest.mark.parametrize('alarms, false, standing_s, latency_s, stood, level', [
     # Start-up and the time after the outage are not counted, but the alarm may not stay in them.
-    assert (normal.watched, normal.alarms) == (3, 0)
+    ([(5.0, 12.0), (50.5, 72.0)], 0, 4.0, 0.5, False, 'ERROR'),
+    ([(48.0, 55.0), (56.0, 57.0)], 1, 2.0, 6.0, True, ''),
+    ([(61.0, 65.0), (80.0, 81.0)], 1, 1.0, None, False, '')])
+def test_an_alarm_in_the_outage_finds_it_and_others_are_false(
+        alarms: List[Span], false: int, standing_s: float, latency_s: Optional[float], stood: bool,
+        level: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    normal, outage, healthy = rows_of(alarms, monkeypatch)
+    assert (normal.watched, normal.alarms) == (3, false)
     assert normal.hours * HOUR_S == pytest.approx(70.0)
-    assert normal.standing_hours * HOUR_S == pytest.approx(4.0)
-    assert (outage.stood_before, outage.latency_s) == (False, pytest.approx(0.5))
-    assert (outage.level, outage.culprit) == ('ERROR', '/a')
-    assert (healthy.fault, healthy.alarms) == (NORMAL, 2)
-    assert healthy.standing_hours * HOUR_S == pytest.approx(28.5)
-
-
-def test_an_alarm_that_stood_before_is_false(monkeypatch: pytest.MonkeyPatch) -> None:
-    normal, outage, _ = rows_of([(48.0, 55.0), (56.0, 57.0)], monkeypatch)
-    assert (outage.stood_before, normal.alarms) == (True, 1)
-    assert outage.latency_s == pytest.approx(6.0)
-    assert normal.standing_hours * HOUR_S == pytest.approx(2.0)
-
-
-def test_an_alarm_after_the_outage_does_not_find_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    normal, outage, _ = rows_of([(61.0, 65.0), (80.0, 81.0)], monkeypatch)
-    assert (outage.latency_s, outage.level, normal.alarms) == (None, '', 1)
+    assert normal.standing_hours * HOUR_S == pytest.approx(standing_s)
+    assert (outage.stood_before, outage.level) == (stood, level)
+    assert outage.latency_s == (latency_s and pytest.approx(latency_s))
+    assert outage.culprit == ('/a' if level else '')
+    assert (healthy.fault, healthy.alarms) == (NORMAL, len(alarms))
+    assert healthy.standing_hours * HOUR_S == pytest.approx(sum(end - begin
+                                                                for begin, end in alarms))
 
 
 def test_a_folder_without_the_recordings_is_told(tmp_path: Path, capsys: Any) -> None:

@@ -6,10 +6,10 @@ from evaluation_robot import BATTERY, LASER, START, robot
 
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, EventType, Learner, PaperModel
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.detectors import Paper, scenario_graph
-from self_awareness_evaluation.simulated import fault_record, normal_record
+from self_awareness_evaluation.detectors import Paper
+from self_awareness_evaluation.records import WindowedEvents, stamps_by
+from self_awareness_evaluation.simulated import fault_record, graph_of, normal_record
 from self_awareness_evaluation.systems import persistent, settling
-from self_awareness_evaluation.windowed_events import WindowedEvents, stamps_by
 from self_awareness_follow_me.scenario import load_scenario
 
 
@@ -68,12 +68,14 @@ def test_alarms_of_peers_are_those_that_the_detector_raises() -> None:
     system.train([robot(60.0, 1), robot(60.0, 2)])
     system.calibrate([robot(60.0, 3)])
     # The first silence ends, so that its alarm clears; the second lasts to the end.
-    result = system.judge(robot(60.0, 4, silent=((1.0, 2.0), (20.0, 24.0), (50.0, 60.0))))
-    assert [alarm.cleared for alarm in result.alarms] == [True, False]
-    assert result.abnormal[result.settling].any()
-    alarms = persistent(result.start, result.abnormal & ~result.settling)
-    assert ([(a.start, a.end, a.cleared) for a in alarms]
-            == [(a.start, a.end, a.cleared) for a in result.alarms])
+    recording = robot(60.0, 4, silent=((1.0, 2.0), (20.0, 24.0), (50.0, 60.0)))
+    found = system.judge(recording).alarms
+    assert [alarm.cleared for alarm in found] == [True, False]
+    said = system.verdicts(recording)
+    assert said.abnormal[said.settling].any()
+    alarms = persistent(said.start, said.abnormal & ~said.settling)
+    assert ([(each.start, each.end, each.cleared) for each in alarms]
+            == [(each.start, each.end, each.cleared) for each in found])
 
 
 def test_a_record_knows_who_does_not_subscribe_from_the_onset_on() -> None:
@@ -85,7 +87,7 @@ def test_a_record_knows_who_does_not_subscribe_from_the_onset_on() -> None:
     assert record.recording.end >= onset + 60 * SECOND_NS
     normal = normal_record(scenario, 3, 'training 1', 5.0)
     assert [present for _, present in normal.subscriptions] == [before]
-    assert {edge[1:] for edge in scenario_graph()} <= {(topic, node) for node, topic in before}
+    assert {edge[1:] for edge in graph_of(scenario)} <= {(topic, node) for node, topic in before}
 
 
 def test_every_record_differs_and_can_be_repeated() -> None:
@@ -106,6 +108,5 @@ def test_a_fault_record_begins_its_fault_at_the_onset() -> None:
     assert record.culprits == ('/player',)
     start = int(record.recording.stamps[0]) // SECOND_NS * SECOND_NS
     assert 50.0 <= (record.onset - start) / SECOND_NS < 52.0
-    of_player = np.array([kind.source == '/player' for kind in record.recording.event_types])
-    last = int(record.recording.stamps[of_player[record.recording.ids]][-1])
+    last = int(record.recording.stamps_of('/player')[-1])
     assert -0.2 < (last - record.onset) / SECOND_NS < 0.05

@@ -6,12 +6,12 @@ from typing import Optional, Tuple
 import numpy as np
 import pytest
 
-from self_awareness import DEFAULT_WINDOW, DetectorParameters
+from self_awareness import DEFAULT_WINDOW
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.detectors import Evidence, Paper, scenario_graph
+from self_awareness_evaluation.detectors import Evidence, Paper
 from self_awareness_evaluation.rows import first_alarm
 from self_awareness_evaluation.simulated import (CALIBRATION_NAME, RECORD_S, TRAINING_NAMES,
-                                                 WITHIN_S, fault_record, normal_record)
+                                                 WITHIN_S, fault_record, graph_of, normal_record)
 from self_awareness_evaluation.systems import Judged
 from self_awareness_follow_me.scenario import load_scenario
 
@@ -31,7 +31,7 @@ def _systems() -> Systems:
     training = [normal_record(scenario, SEED, name, RECORD_S)
                 for name in (*TRAINING_NAMES, 'training 3', 'training 4')]
     calibration = [normal_record(scenario, SEED, CALIBRATION_NAME, CALIBRATION_S)]
-    evidence, paper = Evidence(scenario_graph()), Paper()
+    evidence, paper = Evidence(graph_of(scenario)), Paper()
     evidence.train(training)
     evidence.calibrate(calibration)
     paper.train(training)
@@ -96,7 +96,7 @@ def test_what_was_never_seen_is_at_least_a_suspicion(systems: Systems, kind: str
                                                      paper: str) -> None:
     evidence, by_paper = systems
     record = fault_record(load_scenario(), SEED, kind)
-    verdicts = evidence.verdicts(record.recording, DetectorParameters())
+    verdicts = evidence.verdicts(record.recording)
     after = (verdicts.start + DEFAULT_WINDOW - record.onset) / SECOND_NS
     assert not verdicts.suspicion[after <= 0.0].any()
     assert all(alarm.begin > record.onset for alarm in verdicts.alarms)

@@ -10,12 +10,12 @@ import pytest
 
 from self_awareness import Tuning
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation import experiment, kept_rows, robots, variants as frame, tunings
+from self_awareness_evaluation import experiment, row_files, tunings, variants as frame
 from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.experiment import Unit
-from self_awareness_evaluation.families.protocol import Records
-from self_awareness_evaluation.kept_rows import KeptRows
+from self_awareness_evaluation.families.protocol import Records, recorded
 from self_awareness_evaluation.records import FAMILIES, NORMAL, FaultRecord, Learning, Robot
+from self_awareness_evaluation.row_files import KeptRows
 from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.variants import (CHANNEL, NUMBER, RULE, Variant, one_by_one,
                                                 side_by_side)
@@ -71,9 +71,8 @@ def small(seconds: float = 60.0) -> Robot:
     """Return a robot whose fast topic falls silent."""
     crash = FaultRecord('crash', ('/player',), robot(40.0, 4, silent=((20.0, 40.0),)),
                         START + 20 * SECOND_NS)
-    return Robot(FAMILIES, 'small 1', {'/player', '/power'}, set(),
-                 lambda _: [robot(seconds, 1), robot(seconds, 2)], lambda _: [robot(seconds, 3)],
-                 lambda: [robot(60.0, 5)], lambda: [crash])
+    return Robot({'/player', '/power'}, set(), lambda _: [robot(seconds, 1), robot(seconds, 2)],
+                 lambda _: [robot(seconds, 3)], lambda: [robot(60.0, 5)], lambda: [crash])
 
 
 def unit(*variants: Variant) -> Unit:
@@ -116,15 +115,11 @@ def test_the_detector_gets_the_graph_of_the_robot_and_the_budget(
     monkeypatch.setattr(frame, 'Evidence', Told)
     judges = side_by_side(('evidence', 'evidence_no_graph', 'gaps'), [TWO], budgets=(0.5, 5.0))
     assert [variant.faults for variant in judges] == [True, False, True, False, True]
-    of_family = partial(robots.of_family, 'events_only', 1, 0.1, ('crash',), 1)
-    rows = list(experiment.measure(
+    of_family = partial(recorded, 'events_only', 1, 0.1, ('crash',), 1)
+    assert list(experiment.measure(
         of_family, Unit(lambda _: [], FAMILIES, 'events_only 1', tuple(judges))))
     graph = Records('events_only', 1).robot.graph
     assert made == [(graph, 0.5), (graph, 5.0), (set(), 0.5), (set(), 5.0)]
-    assert [(row.subject.system, row.subject.budget, row.fault) for row in rows] == [
-        ('evidence', 0.5, NORMAL), ('evidence', 5.0, NORMAL), ('evidence_no_graph', 0.5, NORMAL),
-        ('evidence_no_graph', 5.0, NORMAL), ('gaps', None, NORMAL), ('evidence', 0.5, 'crash'),
-        ('evidence_no_graph', 0.5, 'crash'), ('gaps', None, 'crash')]
 
 
 def counted_units(folder: Path, names: Tuple[str, ...], *variants: Variant) -> List[Unit]:
@@ -167,7 +162,7 @@ def test_rows_of_another_plan_or_method_are_refused(tmp_path: Path,
     KeptRows(path, 'plan')
     with pytest.raises(ValueError, match='rows.csv: of another plan'):
         KeptRows(path, 'other')
-    monkeypatch.setattr(kept_rows, '_method', lambda: 'another method')
+    monkeypatch.setattr(row_files, '_method', lambda: 'another method')
     with pytest.raises(ValueError, match='another build of the method; remove it'):
         KeptRows(path, 'plan')
     monkeypatch.undo()

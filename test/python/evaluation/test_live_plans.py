@@ -1,23 +1,27 @@
-"""The plans of live sessions, and how a session walks through one, without a master."""
+"""Live sessions: the plans, how one is walked through without a master, and the processes."""
 from __future__ import annotations
 
 import argparse
 import contextlib
 import itertools
+import os
 import time
 from pathlib import Path
-from typing import Any, Iterator, List
+from typing import Any, Iterator, List, Set
 
 import numpy as np
 import pytest
 import rosbag
+import rosgraph
+import rosnode
 
 from self_awareness_evaluation.live import drivers, plans, session
 from self_awareness_evaluation.live.follow_me import CRASH, DOUBLE, HALF, HANG, FollowMe
 from self_awareness_evaluation.live.packaged_nodes import CAMERAS_HZ, FAULTS, HALF_RATE, NODES
-from self_awareness_evaluation.live.processes import Processes
+from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
+                                                      free_port, unregister)
 from self_awareness_evaluation.live.rows import ERROR, Status
-from self_awareness_evaluation.live.session import Plan, Step
+from self_awareness_evaluation.live.session import Plan, Step, used
 from self_awareness_evaluation.records import Learning
 
 PAGES = Path(__file__).resolve().parents[3] / 'docs' / 'evaluation'
@@ -158,3 +162,52 @@ def test_nobody_waits_where_the_plan_does_not_say_so(monitor: Monitor) -> None:
     assert (row.recovered_s, row.cleared_s, row.back_s, monitor.resets) == (None, None, None, 0)
     begin = time.time()
     assert steps.take(Step('normal', 0.1, is_normal=True)).onset >= begin
+
+
+STARTED_WITHIN_S = 60.0
+
+
+def test_processes_are_ended_and_failures_are_told(tmp_path: Path) -> None:
+    with Processes(tmp_path) as processes:
+        asleep = processes.start('asleep', 'sleep', '1000')
+        processes.run('right', 10.0, 'echo', 'well')
+        with pytest.raises(LiveError, match='exit code 3.*wrong.log'):
+            processes.run('wrong', 10.0, 'sh', '-c', 'exit 3')
+    assert asleep.poll() is not None
+    assert (tmp_path / 'right.log').read_text() == 'well\n'
+    with pytest.raises(LiveError, match='not within 0 s: a wonder'):
+        await_condition('a wonder', lambda: False, 0.0)
+    with pytest.raises(LiveError, match=f'process {asleep.pid} has ended'):
+        used(asleep.pid)
+
+
+def test_what_a_process_uses() -> None:
+    found = used(os.getpid())
+    assert 5.0 < found['memory_mb'] < 1e4 and found['threads'] >= 1 and found['files'] >= 3
+
+
+def nodes() -> Set[str]:
+    """Return the names of those that publish, subscribe or serve, but for roscore's own."""
+    return set(rosnode.get_node_names()) - {'/rosout'}
+
+
+def test_who_ended_without_unregistering_is_unknown_to_the_master(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    port = free_port()
+    monkeypatch.setenv('ROS_MASTER_URI', f'http://127.0.0.1:{port}')
+    monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path))
+    with Processes(tmp_path) as processes:
+        processes.start('roscore', 'roscore', '-p', str(port))
+        await_condition('the master answers', rosgraph.is_master_online, STARTED_WITHIN_S)
+        for number, name in enumerate(('/camera', '/lidar', '/lidar_driver')):
+            gone = f'http://127.0.0.1:{number + 1}'
+            node = rosgraph.Master(name)
+            node.registerPublisher(f'{name}/out', 'std_msgs/String', gone)
+            node.registerSubscriber('/tf', 'std_msgs/String', gone)
+            node.registerService(f'{name}/get_loggers', f'rosrpc://127.0.0.1:{number + 1}', gone)
+        assert nodes() == {'/camera', '/lidar', '/lidar_driver'}
+
+        unregister(['/lidar', '/never_there'])
+        assert nodes() == {'/camera', '/lidar_driver'}
+    with pytest.raises(LiveError, match='the master does not answer any more'):
+        unregister(['/camera'])

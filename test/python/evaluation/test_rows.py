@@ -13,11 +13,10 @@ from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import confidence
 from self_awareness_evaluation import row_files
 from self_awareness_evaluation.detectors import Evidence
-from self_awareness_evaluation.figures import Found, Quiet, quantile, rate_interval
-from self_awareness_evaluation.records import NORMAL, FaultRecord, Learning
+from self_awareness_evaluation.figures import Found, Quiet, rate_interval
+from self_awareness_evaluation.records import NORMAL, FaultRecord, Learning, WindowedEvents
 from self_awareness_evaluation.rows import Row, Subject, fault_row, normal_row
 from self_awareness_evaluation.systems import SUSPICION, Judged, SystemAlarm
-from self_awareness_evaluation.windowed_events import WindowedEvents
 
 from evaluation_robot import START, robot
 
@@ -35,8 +34,7 @@ def judged(alarms: List[SystemAlarm], suspicion: Optional[List[int]] = None,
     start = START + DEFAULT_WINDOW * np.arange(100, dtype=np.int64)
     suspicious = np.zeros(100, dtype=bool)
     suspicious[suspicion or []] = True
-    return Judged(start, np.zeros(100, dtype=bool), np.zeros(100), np.arange(100) < 50, alarms,
-                  -1.0, suspicious, suspicions or [])
+    return Judged(start, np.arange(100) < 50, alarms, suspicious, suspicions or [])
 
 
 def fault_at(window: int, back: Optional[int] = None, culprit: str = '/a') -> FaultRecord:
@@ -166,21 +164,6 @@ def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:
             row_files.load(path, Row)
 
 
-def test_figures_of_normal_operation() -> None:
-    other = replace(SUBJECT, robot='timers 2')
-    quiet = Quiet.of([
-        row(alarms=3, standing_hours=0.004, warnings=4, evidence=('answers',) * 3, expected=0.25),
-        row(alarms=1, warnings=4, evidence=('answers',)),
-        row(subject=other, hours=2.0, expected=0.5, watched=3, components=4)])
-    assert (quiet.hours, quiet.alarms, quiet.per_hour) == (4.0, 4, 1.0)
-    assert (quiet.standing, quiet.warnings_per_hour) == (pytest.approx(0.001), 2.0)
-    assert quiet.evidence == (('answers', 4),)
-    assert quiet.expected == pytest.approx((0.25 + 0.5) / 2)  # the mean of the robots
-    assert (quiet.kept, quiet.watched, quiet.components) == (0.5, 3.0, 4.0)
-    nothing = Quiet.of([])
-    assert math.isnan(nothing.per_hour) and math.isnan(nothing.interval[0])
-
-
 def test_robots_that_differ_widen_the_interval() -> None:
     assert rate_interval([(5, 10.0), (5, 10.0)]) == confidence.poisson_rate(10, 20.0)
     # Chi-square is 25 / 5 + 25 / 5 = 10 at one degree of freedom.
@@ -188,18 +171,10 @@ def test_robots_that_differ_widen_the_interval() -> None:
     assert rate_interval([(0, 10.0), (0, 10.0)]) == confidence.poisson_rate(0, 20.0)
 
 
-def test_figures_of_faults() -> None:
-    found = Found.of([
-        row(source='/a', latency_s=0.4, first=True, among_three=True, level='ERROR', culprit='/a'),
-        row(source='/a', latency_s=4.0, first=False, among_three=True, level='ERROR',
-            culprit='/b'),
-        row(source='/a', stood_before=True, after=2)])
-    assert (found.records, found.stood_before) == (3, 1)
-    assert [found.within(s) for s in (0.3, 1.0, 5.0)] == [0, 1, 2]
-    assert found.share() == pytest.approx(2 / 3)
-    assert found.interval() == confidence.wilson(2, 3)
-    assert (found.median_s, found.first, found.among_three, found.at_end, found.after) == (
-        4.0, (1, 2), (2, 2), (1, 2), (2, 1))
-    none = Found.of([])
+def test_figures_of_nothing_and_of_what_was_never_found() -> None:
+    nothing, none = Quiet.of([]), Found.of([])
+    assert math.isnan(nothing.per_hour) and math.isnan(nothing.interval[0])
     assert none.records == 0 and math.isnan(none.share()) and math.isnan(none.median_s)
-    assert quantile([1.0, None, None], 0.5) == math.inf, 'what was not found took for ever'
+    found = Found.of([row(stood_before=True), row(), row(latency_s=1.0)])
+    assert (found.stood_before, found.within(0.9), found.within(1.0)) == (1, 0, 1)
+    assert found.median_s == math.inf, 'what was not found took for ever'

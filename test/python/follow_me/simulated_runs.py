@@ -36,7 +36,7 @@ def run(kind: str = '', seed: int = 5) -> Run:
 def times(of: Run, topic: str, value: Any = None, source: str = '') -> List[float]:
     """Seconds since the onset at which a topic (with a value, of a source) was seen after it."""
     return [(e.stamp_ns - ONSET_NS) / 1e9 for e in of
-            if e.stamp_ns >= ONSET_NS and e.topic == topic and value in (None, e.value)
+            if e.stamp_ns >= ONSET_NS and e.topic == topic and value in (None, e.message.value)
             and source in ('', e.source)]
 
 

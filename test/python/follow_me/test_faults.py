@@ -1,7 +1,10 @@
 """The simulated robot's faults beyond the paper's: names, culprits, effects; no ROS master."""
 from __future__ import annotations
 
+import multiprocessing
+import os
 import random
+import time
 from collections import Counter
 from dataclasses import replace
 from pathlib import Path
@@ -10,11 +13,13 @@ from typing import Any, Dict, List, Tuple
 
 import pytest
 import rosbag
-from simulated_runs import LEFT_S, MS, ONSET_NS, Run, S, counts, last, output, robot, run, times
+from simulated_runs import LEFT_S, MS, ONSET_NS, S, Run, counts, last, output, robot, run, times
 
+from self_awareness_evaluation.live.processes import becomes_true
+from self_awareness_follow_me import induction
 from self_awareness_follow_me.component import Component, Message, Publish, Wake
 from self_awareness_follow_me.component_spec import ComponentSpec, Duration, Task
-from self_awareness_follow_me.effects import Change, doubled, halved
+from self_awareness_follow_me.effects import Change, Starvation, doubled, halved
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.simulation import START_S, InducedFault, events, simulate
 
@@ -129,7 +134,7 @@ def test_order_is_reversed() -> None:
 
 
 def test_unknown_message_comes_every_second() -> None:
-    assert not [e for e in run() if e.value == 5]
+    assert not [e for e in run() if e.message.value == 5]
     stamps = times(run('unknown'), '/person_hypotheses', 5, '/anchoring')
     assert len(stamps) == pytest.approx(LEFT_S, abs=2)
     assert all(0.9 < b - a < 1.1 for a, b in zip(stamps, stamps[1:]))
@@ -195,3 +200,34 @@ def test_rate_of_what_is_done_upon_a_topic(each: int, effect: Any, copies: int) 
     said = [p for now in range(6)
             for p in _published(component, component.receive(now, Message('in', now)), now)]
     assert len(said) == copies
+
+
+TAKES_S = 0.2  # so long, in the test, it takes to start a worker
+BUSY_WITHIN_S = 60.0
+
+
+def busy_s(pid: int) -> float:
+    """Return how long a process has taken the CPU [s]."""
+    fields = Path(f'/proc/{pid}/stat').read_text(encoding='ascii').rpartition(')')[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf('SC_CLK_TCK')
+
+
+def test_no_worker_is_busy_before_all_have_started(monkeypatch: pytest.MonkeyPatch) -> None:
+    start = multiprocessing.Process.start
+    workers: List[multiprocessing.Process] = []
+
+    def start_slowly(worker: multiprocessing.Process) -> None:
+        start(worker)
+        workers.append(worker)
+        time.sleep(TAKES_S)
+
+    def busy() -> List[float]:
+        return [busy_s(int(worker.pid or 0)) for worker in workers]
+
+    monkeypatch.setattr(multiprocessing.Process, 'start', start_slowly)
+    with induction.starved(Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)):
+        at_first = busy()
+        assert becomes_true(lambda: min(busy()) >= 2 * TAKES_S, BUSY_WITHIN_S), 'all are busy'
+    assert len(workers) == 4 * len(os.sched_getaffinity(0))
+    assert max(at_first) < TAKES_S
+    assert not any(worker.is_alive() for worker in workers), 'they end with the fault'

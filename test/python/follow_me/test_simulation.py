@@ -1,19 +1,22 @@
-"""Recordings of the simulated robot: the paper's rates and errors, bags; no ROS master."""
+"""Recordings of the simulated robot: rates and errors of the paper, bags, its speed; no master."""
 from __future__ import annotations
 
 import os
 import time
 from collections import Counter
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from statistics import median
-from typing import Any, Dict, List
+from typing import Any, Dict, Iterator, List, Tuple
 
 import pytest
 import rosbag
 from simulated_runs import DURATION_S, LEFT_S, ONSET_NS, SCENARIO, Run, last, robot, run, times
 
 from self_awareness.commands.simulate import main
+from self_awareness_follow_me import simulation
 from self_awareness_follow_me.simulation import START_S, InducedFault, events, simulate
+from self_awareness_follow_me.speed import sped_up
 
 KINDS = ('cc1', 'cc2', 'rs', 'ac', 'lat', 'lat:motors', 'crash:camera', 'silence', 'half:player',
          'half:slam', 'double:player', 'double:slam', 'double:face_detection', 'extra', 'order',
@@ -41,7 +44,7 @@ def test_normal_operation_has_the_rates_of_the_paper(seed: int) -> None:
     assert min(rates.values()) == pytest.approx(0.5, rel=0.05)
     assert max(rates.values()) == pytest.approx(86.0, rel=0.01)
     types = {(e.source, e.topic, e.datatype,
-              e.value if e.datatype in robot().type_fields else None) for e in of}
+              e.message.value if e.datatype in robot().type_fields else None) for e in of}
     assert len(types) == 27
 
 
@@ -185,3 +188,41 @@ def test_program_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert main(['-o', str(path), '--scenario', str(SCENARIO), '--duration', '2', *arguments]) == 1
     assert message in capsys.readouterr().err
     assert not path.exists() or path.read_text(encoding='utf-8') == 'precious'
+
+
+def test_ten_times_as_fast_it_sends_as_much_in_a_tenth_of_the_time() -> None:
+    usual = Counter(event.topic for event in simulation.events(200.0, 1, None, robot()))
+    fast = Counter(event.topic for event in simulation.events(20.0, 1, None,
+                                                              sped_up(robot(), 10.0)))
+    assert set(fast) == set(usual)
+    assert sum(fast.values()) == pytest.approx(sum(usual.values()), rel=0.02)
+    for topic in ('/odom', '/scan', '/battery', '/pose', '/faces'):
+        assert fast[topic] == pytest.approx(usual[topic], rel=0.1), topic
+
+
+def numbers(part: Any, name: str = '', owner: str = '') -> Iterator[Tuple[str, float]]:
+    """Yield all floats of a part of a scenario but 0, each with the names that lead to it last."""
+    if is_dataclass(part):
+        part = {field.name: getattr(part, field.name) for field in fields(part)}
+    if isinstance(part, dict):
+        for key, each in part.items():
+            yield from numbers(each, key, name)
+    elif isinstance(part, tuple):
+        for each in part:
+            yield from numbers(each, name, owner)
+    elif isinstance(part, float) and part != 0.0:
+        yield f'{owner}.{name}', part
+
+
+def test_no_time_of_it_is_forgotten() -> None:
+    usual = robot()
+    assert sped_up(usual, 1.0) == usual
+    ratios = {(name, slow / number) for (name, number), (_, slow) in zip(
+        numbers(usual), numbers(sped_up(usual, 0.5)))}
+    assert {ratio for _, ratio in ratios} == {1.0, 2.0}
+    # The machine stays as it is, and so does what is no time.
+    as_ever = {name for name, ratio in ratios if ratio == 1.0}
+    no_time = ('.sigma', '.rare', '.factor', '.probability')
+    assert {name for name in as_ever if not name.endswith(no_time)} == {
+        '.cpu_share', 'transport.median', 'lateness.median', 'rs.slowdown', 'settings.lost'}
+    assert not as_ever & {name for name, ratio in ratios if ratio == 2.0}
