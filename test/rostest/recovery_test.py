@@ -8,19 +8,20 @@ import shutil
 import signal
 import tempfile
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, Dict, Iterator, List, Optional
 
 import rospy
 import rostest
 import yaml
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from diagnostic_msgs.msg import DiagnosticStatus
 from std_srvs.srv import Trigger, TriggerResponse
 
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition, ours,
                          pid_of, run_program)
 from monitor_case import MonitorCase
 from self_awareness.msg import RecoveryAction, RecoveryActions
+from self_awareness.recovery.node_process import process_of
 from self_awareness.srv import Maintenance, MaintenanceResponse
 from self_awareness_follow_me.scenario import load_scenario
 
@@ -30,69 +31,41 @@ BACK_WITHIN_S = 5.0
 STOP = {'stop': [PLAYER]}
 
 
-class Heard:
-    """When /player was last heard [s of time.monotonic()]."""
-
-    def __init__(self) -> None:
-        self.at = 0.0
-        rospy.Subscriber('/scan', rospy.AnyMsg, self._on_scan)
-
-    def _on_scan(self, _: rospy.AnyMsg) -> None:
-        self.at = time.monotonic()
-
-
-class RecoveryListener:
+class RecoveryListener(MonitorListener):
     """Keeps what the recovery says."""
 
     def __init__(self) -> None:
+        super().__init__(RECOVERY)
         self.actions: List[RecoveryAction] = []
-        self.statuses: List[DiagnosticStatus] = []
-        self._subscribers = [
-            rospy.Subscriber(RECOVERY + '/actions', RecoveryActions, self._on_actions),
-            rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics)]
+        self._subscribers.append(rospy.Subscriber(RECOVERY + '/actions', RecoveryActions,
+                                                  self._on_actions))
 
-    def close(self) -> None:
-        for subscriber in self._subscribers:
-            subscriber.unregister()
-
-    def await_status(self, level: int, words: str, within_s: float = 40) -> DiagnosticStatus:
+    def await_status(self, level: int, words: str) -> DiagnosticStatus:
         """Waits for a status from now on."""
-        seen = len(self.statuses)
+        seen = len(self.diagnostics('recovery'))
         return await_condition('{} with {}'.format(level, words), lambda: next(
-            (each for each in self.statuses[seen:]
-             if each.level == level and words in each.message), None), within_s)
+            (each for each in self.diagnostics('recovery')[seen:]
+             if each.level == level and words in each.message), None), 40)
 
     def _on_actions(self, message: RecoveryActions) -> None:
         self.actions = message.actions
 
-    def _on_diagnostics(self, array: DiagnosticArray) -> None:
-        self.statuses += [each for each in array.status if each.name == RECOVERY[1:]
-                          + ': recovery']
-
 
 class RecoveryTest(MonitorCase):
 
-    bags: str
     trained: str
-    heard: Heard
-    robot: Process
 
     @classmethod
     def setUpClass(cls) -> None:
-        cls.bags = tempfile.mkdtemp()
-        cls.trained = os.path.join(cls.bags, 'robot.model')
-        for command in (('simulate', '-o', cls.bags, '--duration', '120', '--runs', '2'),
-                        ('train', os.path.join(cls.bags, 'normal_1.bag'),
-                         os.path.join(cls.bags, 'normal_2.bag'), '-o', cls.trained)):
-            run_program(*command)
-        cls.heard = Heard()
-        cls.robot = Process('roslaunch', '--wait', 'self_awareness', 'follow_me.launch',
-                            'respawn:=true')
-
-    @classmethod
-    def tearDownClass(cls) -> None:
-        cls.robot.stop()
-        shutil.rmtree(cls.bags)
+        bags = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, bags)
+        cls.trained = os.path.join(bags, 'robot.model')
+        run_program('simulate', '-o', bags, '--duration', '120', '--runs', '2')
+        run_program('train', os.path.join(bags, 'normal_1.bag'),
+                    os.path.join(bags, 'normal_2.bag'), '-o', cls.trained)
+        robot = Process('roslaunch', '--wait', 'self_awareness', 'follow_me.launch',
+                        'respawn:=true')
+        cls.addClassCleanup(robot.stop)
 
     def rules(self, *steps: Dict[str, Any], **changed: Any) -> str:
         values = {'delay': 0.5, 'wait': 30.0, 'grace': 1.0, **changed, 'rules': [
@@ -101,30 +74,16 @@ class RecoveryTest(MonitorCase):
             yaml.safe_dump(values, file)
         return file.name
 
-    def recovery(self, rules: str) -> Process:
-        """Needs a monitor: where that keeps its incidents is read once."""
-        await_condition('the monitor', lambda: rospy.has_param(
-            '/self_awareness/recorder/directory'), 20)
-        return ours('recovery.py', rules)
-
-    def await_player(self) -> None:
-        begin = time.monotonic()
-        await_condition('/player is heard', lambda: self.heard.at > begin, 60)
-
     @contextmanager
     def recovering(self, rules: str) -> Iterator[RecoveryListener]:
         """Monitor and recovery; when the block begins, all is well and known."""
-        self.await_player()
+        rospy.wait_for_message('/scan', rospy.AnyMsg, 60)
+        listener = RecoveryListener()
         with self.monitor(self.trained, detector='evidence', settle_time=3), \
-                MonitorListener() as monitor, self.recovery(rules):
-            self.said = monitor
-            listener = RecoveryListener()
-            try:
-                monitor.await_settled()
-                listener.await_status(DiagnosticStatus.OK, 'watches 1 components')
-                yield listener
-            finally:
-                listener.close()
+                MonitorListener() as self.said, ours('recovery.py', rules), listener:
+            self.said.await_settled()
+            listener.await_status(DiagnosticStatus.OK, 'watches 1 components')
+            yield listener
 
     @contextmanager
     def hung(self) -> Iterator[int]:
@@ -134,10 +93,8 @@ class RecoveryTest(MonitorCase):
         try:
             yield pid
         finally:
-            try:
+            with suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGCONT)
-            except ProcessLookupError:
-                pass
 
     def hold(self, duration: float) -> MaintenanceResponse:
         return rospy.ServiceProxy(RECOVERY + '/hold', Maintenance)(duration)
@@ -152,10 +109,10 @@ class RecoveryTest(MonitorCase):
                 onset = time.monotonic()
                 alarm = self.said.await_alarm()
                 raised = time.monotonic()
-                back = await_condition('/player is back', lambda: (
-                    self.heard.at if self.heard.at > raised else None), 40)
+                rospy.wait_for_message('/scan', rospy.AnyMsg, 40)
+                back = time.monotonic()
             rospy.loginfo('alarm after %.2f s, back %.2f s later', raised - onset, back - raised)
-            self.assertEqual(alarm.component, PLAYER)
+            self.assertEqual(alarm.component, PLAYER, alarm.message)
             self.assertLess(back - raised, 0.5 + BACK_WITHIN_S)
             action: Optional[RecoveryAction] = await_condition('the action is over', lambda: next(
                 (each for each in recovery.actions if each.over), None), 20)
@@ -185,19 +142,14 @@ class RecoveryTest(MonitorCase):
             with self.hung() as pid:
                 self.said.await_alarm()
                 recovery.await_status(DiagnosticStatus.WARN, 'does nothing until')
-                self.assertEqual((recovery.actions, state_of(pid)), ([], 'T'))
+                self.assertEqual(recovery.actions, [])
+                self.assertTrue(process_of(PLAYER, pid).runs())
                 self.assertEqual(self.hold(0.0).message, 'goes on')
                 await_condition('then it is done', lambda: sum(
                     each.success for each in recovery.actions) == 2, 40)
                 self.assertEqual([each.result for each in recovery.actions],
                                  ['/does_not_help says: no change',
                                   '/player ended by SIGKILL, since it hangs'])
-
-
-def state_of(pid: int) -> str:
-    """The state of a process: T, it is stopped."""
-    with open('/proc/{}/stat'.format(pid)) as file:
-        return file.read().rsplit(') ', 1)[1].split()[0]
 
 
 if __name__ == '__main__':

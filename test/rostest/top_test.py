@@ -10,8 +10,10 @@ import struct
 import subprocess
 import termios
 import threading
+from contextlib import suppress
 from typing import List
 
+import rosgraph
 import rospy
 import rostest
 
@@ -38,14 +40,9 @@ class Terminal:
         self._reader.start()
 
     def _read(self) -> None:
-        while True:
-            try:
-                data = os.read(self._ours, 65536)
-            except OSError:  # nobody has the other end any more
-                return
-            if not data:
-                return
-            self._said.append(data)
+        with suppress(OSError):  # nobody has the other end any more
+            for data in iter(lambda: os.read(self._ours, 65536), b''):
+                self._said.append(data)
 
     @property
     def text(self) -> str:
@@ -142,9 +139,7 @@ class TopTest(MonitorCase):
         address = 'http://127.0.0.1:' + port
         with Process('rosmaster', '--core', '-p', port,
                      env={'ROS_MASTER_URI': address}) as master:
-            await_condition('the master', lambda: subprocess.run(
-                ('rosnode', 'list'), env=dict(os.environ, ROS_MASTER_URI=address),
-                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL).returncode == 0, 30)
+            await_condition('the master', lambda: rosgraph.is_master_online(address), 30)
             with top(ROS_MASTER_URI=address) as terminal:
                 terminal.await_text('waiting for the monitor')
                 master.stop()
@@ -153,12 +148,6 @@ class TopTest(MonitorCase):
         with top(ROS_MASTER_URI=address) as terminal:
             self.assertEqual(terminal.wait(), 1)
             self.assertIn('no master answers at ' + address, terminal.text)
-
-    def test_without_a_terminal_it_says_so(self) -> None:
-        done = subprocess.run((path_of('top'),), stdin=subprocess.DEVNULL,
-                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.assertEqual(done.returncode, 1)
-        self.assertIn('needs a terminal', done.stderr)
 
 
 if __name__ == '__main__':

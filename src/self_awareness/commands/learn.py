@@ -13,13 +13,11 @@ from self_awareness.calibration import limits
 from self_awareness.calibration.heads_and_tails import START_UP_S
 from self_awareness.commands import cli, ros_node
 from self_awareness.learning import programs
-from self_awareness.learning.leaving import limit_goodbye
 from self_awareness.learning.node import LearningNode, Plan
 from self_awareness.learning.recorder import RecorderCrash
 from self_awareness.output_files import MODEL, check_outputs
 
 _MONITOR = 'self_awareness_node'
-_START_AGAIN = 3
 
 _EPILOG = """\
 Better: roslaunch self_awareness learn.launch model:=FILE. The parameter ~model names the file of
@@ -38,11 +36,11 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         return cli.run(_parser(), _learn, cli.of_node(argv))
     except RecorderCrash as crash:
         print(f'learn: error: {crash}', file=sys.stderr)
-        return _START_AGAIN
+        return ros_node.START_AGAIN
 
 
 def _learn(arguments: argparse.Namespace) -> None:
-    limit_goodbye()
+    ros_node.limit_goodbye()
     ros_node.begin('self_awareness')
     model = str(rospy.get_param('~model', ''))
     if os.path.exists(model):

@@ -14,8 +14,6 @@ from self_awareness.learning import age, more, programs
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.reporting import age_text, diff_text
 
-_NEW = '.new'
-
 _EPILOG = """\
 What the model was learned from is not learned twice. Recordings in which it finds an alarm or a
 suspicion are left out: accept what is normal first (~accept). Two thirds of each other one are
@@ -34,7 +32,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _learn_more(arguments: argparse.Namespace) -> None:
-    new = arguments.output or f'{arguments.model}{_NEW}'
+    new = arguments.output or f'{arguments.model}.new'
     if arguments.take and not arguments.logs and os.path.exists(new):
         _take(new, arguments.model)
         return

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
 import traceback
 from contextlib import contextmanager
 from typing import Iterator, Optional, Sequence
@@ -10,7 +11,6 @@ from typing import Iterator, Optional, Sequence
 import rospy
 
 from self_awareness.commands import cli, ros_node
-from self_awareness.learning.leaving import limit_goodbye
 from self_awareness.recovery import rules
 from self_awareness.recovery.node import Recovery
 
@@ -18,8 +18,6 @@ _EPILOG = """\
 Better: roslaunch self_awareness recovery.launch rules:=FILE. config/recovery.yaml explains the
 rules. Call ~hold (self_awareness/Maintenance) before you work on the robot.
 """
-
-_START_AGAIN = 3  # exit code: neither that of cli.run for an error nor for wrong usage
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -29,33 +27,27 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         see cli.run; 1: the rules cannot be used. 3 if it failed for another reason, so that it may
         be started again (launch/until_refused.sh).
     """
-    try:
-        return cli.run(_parser(), _recover, cli.of_node(argv))
-    except _Failed:
-        traceback.print_exc()
-        return _START_AGAIN
-
-
-class _Failed(Exception):
-    """Something failed that may go well the next time."""
+    return cli.run(_parser(), _recover, cli.of_node(argv))
 
 
 def _recover(arguments: argparse.Namespace) -> None:
-    with _failing():
-        limit_goodbye()
+    with _to_be_started_again():
+        ros_node.limit_goodbye()
         ros_node.begin('self_awareness_recovery')
         monitor = rospy.resolve_name(arguments.monitor)
     allowed = rules.load(os.path.expanduser(arguments.rules), monitor, rospy.get_name())
-    with _failing():
+    with _to_be_started_again():
         Recovery(allowed, monitor).run()
 
 
 @contextmanager
-def _failing() -> Iterator[None]:
+def _to_be_started_again() -> Iterator[None]:
+    """Let what fails here end the program, since it may go well the next time."""
     try:
         yield
-    except Exception as error:
-        raise _Failed(str(error)) from error
+    except Exception:
+        traceback.print_exc()
+        sys.exit(ros_node.START_AGAIN)
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -5,6 +5,7 @@ import argparse
 import copy
 import sys
 import threading
+from functools import partial
 from typing import Any, Callable, Dict, List, Optional, Sequence
 
 import rosgraph
@@ -100,27 +101,20 @@ class _Listener:
 
 
 def _calls(monitor: str) -> Dict[str, Callable[..., str]]:
-    def trigger(service: str) -> str:
-        return str(rospy.ServiceProxy(f'{monitor}/{service}', Trigger)().message)
+    def call(service: str, kind: Any, **fields: Any) -> str:
+        try:
+            return str(rospy.ServiceProxy(f'{monitor}/{service}', kind)(**fields).message)
+        except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+            return f'not done: {error}'
 
     def mute(component: str, duration: float) -> str:
-        return str(rospy.ServiceProxy(f'{monitor}/mute', Mute)(
-            component=component, duration=duration).message)
+        return call('mute', Mute, component=component, duration=duration)
 
     def accept(alarm: int, strangers: List[Acceptance]) -> str:
-        call = rospy.ServiceProxy(f'{monitor}/accept', Accept)
-        return str((call(alarm=alarm) if alarm else call(more=strangers)).message)
+        return call('accept', Accept, alarm=alarm, more=[] if alarm else strangers)
 
-    def answered(call: Callable[..., str]) -> Callable[..., str]:
-        def answer(*arguments: Any) -> str:
-            try:
-                return call(*arguments)
-            except (rospy.ServiceException, rospy.ROSException, OSError) as error:
-                return f'not done: {error}'
-        return answer
-
-    return {'c': answered(lambda: trigger('clear')), 'd': answered(lambda: trigger('dump')),
-            'm': answered(mute), 'a': answered(accept)}
+    return {'c': partial(call, 'clear', Trigger), 'd': partial(call, 'dump', Trigger),
+            'm': mute, 'a': accept}
 
 
 def _parser() -> argparse.ArgumentParser:

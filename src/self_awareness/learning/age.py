@@ -6,18 +6,17 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import Dict, List, Sequence
 
-from self_awareness import (Acceptance, BagError, ComponentDrift, DetectorParameters,
-                            EvidenceModel, Recording, TrainedModel, accepted_file, drift_of,
-                            evidence_lanes, recordings)
+from self_awareness import (Acceptance, ComponentDrift, DetectorParameters, EvidenceModel,
+                            Recording, TrainedModel, accepted_file, drift_of, evidence_lanes,
+                            recordings)
 from self_awareness.judging import evidence_judge
 from self_awareness.parts import BagPart, Named, look
-from self_awareness.recordings import RecordingEvents, overlap
+from self_awareness.recordings import overlap
 from self_awareness.stamps import SECOND_NS
 
 LEARNED, INCIDENT, SHORT = 'learned from', 'not normal', 'too short'
 """Why a recording says nothing of a drift."""
 
-_KEPT = '.kept'
 _SHORTEST_NS = 60 * SECOND_NS
 
 
@@ -79,18 +78,13 @@ class Age:
         return [name for _, name in sorted(told, reverse=True)]
 
 
-def kept_beside(model: str) -> str:
-    """Return the folder of the logs that are kept for a model."""
-    return model + _KEPT
-
-
 def logs_of(model: str, named: Sequence[str]) -> Named:
     """Return the recordings that are named; without any, those that are kept beside the model.
 
     Raises:
         ValueError: there is none, or a part of a recording is named.
     """
-    kept = kept_beside(model)
+    kept = f'{model}.kept'
     if not named and not os.path.isdir(kept):
         raise ValueError(f'there is no folder {kept}: name event logs of normal operation '
                          '(roslaunch self_awareness record.launch)')
@@ -122,15 +116,10 @@ def age_of(path: str, trained: TrainedModel, named: Named, skip_bad: bool = Fals
     accepted = accepted_file.beside(path)
     computed = EvidenceModel(trained)
     heard: List[Heard] = []
-    for part in named.parts:
-        try:
-            found = _heard(trained, computed, accepted, part)
-        except (BagError, ValueError) as error:
-            named.bad.append(str(error))
-            continue
+    for found in named.each(lambda part: _heard(trained, computed, accepted, part)):
         for other in heard:
             if overlap(found.recording, other.recording):
-                raise ValueError(f'{part}: the same recording as {other.part}; name it once')
+                raise ValueError(f'{found.part}: the same recording as {other.part}; name it once')
         heard.append(found)
     named.check(skip_bad and bool(heard))
     heard.sort(key=lambda each: each.origin)
@@ -173,16 +162,10 @@ def _heard(trained: TrainedModel, computed: EvidenceModel, accepted: Sequence[Ac
     alarms = [*verdicts.alarms, *verdicts.suspicions]
     if alarms:
         return left_out(INCIDENT, f'{alarms[0].kind} {alarms[0].culprit}'.strip())
-    return Heard(part, recording, events.origin,
-                 shares=_shares(trained, computed, accepted, parameters, events, first))
-
-
-def _shares(trained: TrainedModel, computed: EvidenceModel, accepted: Sequence[Acceptance],
-            parameters: DetectorParameters, events: RecordingEvents,
-            first: int) -> Dict[str, float]:
-    """Return the largest share of each component, once the detector has settled."""
+    # The largest shares once the detector has settled.
     lanes = evidence_lanes(trained, computed, parameters, events.stamps, events.ids, events.end,
                            list(events.event_types), [first + parameters.settle_time],
                            list(events.clock_steps), list(events.waiting), events.attributes,
                            list(accepted))
-    return dict(zip(lanes.components, lanes.shares[:, 0].tolist()))
+    return Heard(part, recording, events.origin,
+                 shares=dict(zip(lanes.components, lanes.shares[:, 0].tolist())))

@@ -14,9 +14,11 @@ import rosbag
 
 from self_awareness import (BagError, EncodingRules, read_events, recordings_in_event_log,
                             summarise_bag)
-from self_awareness.learning.silence import HEARD_S
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
+
+HEARD_S = 10.0
+"""For so long after an event the robot counts as heard [s]."""
 
 _ACTIVE = '.active'
 _LOCK = '.lock'
@@ -42,12 +44,7 @@ class Log:
 
 
 class LogFolder:
-    """A folder of event logs. It is made if it is not there.
-
-    Args:
-        path: of the folder.
-        encoding: that the logs must have been recorded by; others are left out.
-    """
+    """A folder of event logs, made if it is not there; those of another encoding are left out."""
 
     def __init__(self, path: str, encoding: EncodingRules) -> None:
         self.path = path

@@ -22,16 +22,12 @@ def divided(trained: TrainedModel, age: Age, start_up: float) -> Division:
     """Return what of the recordings is trained on, and what the limits are found on.
 
     Each new recording is cut, as by learn.launch. What the model was calibrated on already is
-    calibrated on again, as far as it is named: training drops what it has shown.
-
-    Args:
-        trained: the model.
-        age: what its recordings say.
-        start_up: left out after each start of the robot [s].
+    calibrated on again, as far as it is named: training drops what it has shown. Of each start of
+    the robot, the start-up [s] is left out.
     """
     new = [Log(each.part, (each.recording.end - each.origin) / SECOND_NS,
                each.recording.robot_start or each.origin)
-           for each in age.heard if not each.left_out]
+           for each in age.counted]
     division = divide(new, start_up)
     known = [] if trained.calibration is None else trained.calibration.recordings
     again = [part for each in age.heard if each.left_out == LEARNED

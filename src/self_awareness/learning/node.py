@@ -7,17 +7,18 @@ import time
 from dataclasses import dataclass
 from typing import Dict, Optional
 
+import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
-from self_awareness import EncodingRules
+from self_awareness import EncodingRules, why_nothing_is_heard
 from self_awareness.learning import programs
 from self_awareness.learning.announcer import Announcer
 from self_awareness.learning.division import divide
-from self_awareness.learning.logs import LogFolder
+from self_awareness.learning.logs import HEARD_S, LogFolder
 from self_awareness.learning.recorder import Recorder
-from self_awareness.learning.silence import HEARD_S, ask_why
+from self_awareness.reporting.text import number_of
 
 _PERIOD_S = 1.0
 _NOBODY_S = 3.0  # nothing was heard at all: who starts has been seen by then
@@ -27,17 +28,9 @@ _LEAST_MORE_H = 1.0 / 60.0
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be learned.
+    """What is to be learned: the file of the model, and what the options of `learn` say.
 
-    Args:
-        model: file to write.
-        logs: folder of the event logs.
-        hours: of recordings to learn from, those that are there included; time in which nobody is
-            heard does not count.
-        start_up: left out after each start of the robot [s].
-        budget: false alarms an hour that the limits allow.
-        encoding: how messages become events.
-        subscribe: used or all, see launch/record.launch.
+    Recordings that are there count among the hours; time in which nobody is heard does not.
     """
 
     model: str
@@ -50,11 +43,7 @@ class Plan:
 
 
 class LearningNode:
-    """Learns, and serves `~finish` (std_srvs/Trigger); needs rospy.init_node().
-
-    Args:
-        plan: what is to be learned.
-    """
+    """Learns by a plan, and serves `~finish` (std_srvs/Trigger); needs rospy.init_node()."""
 
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
@@ -126,16 +115,29 @@ class LearningNode:
         before, self._silence = self._silence, ''
         longest = HEARD_S if recorder.events else _NOBODY_S
         if not recorder.problem and recorder.silent_for() > longest:
-            self._silence = ask_why(self._plan.encoding, self._plan.subscribe)
+            self._silence = self._ask_why()
             if self._silence != before:
                 rospy.logwarn('nothing is heard, so this time does not count: %s', self._silence)
         elif before and not recorder.problem:
             rospy.loginfo('the robot is heard')
 
+    def _ask_why(self) -> str:
+        """Return why nothing is heard, by what the master says, in words."""
+        try:
+            master = rosgraph.Master(rospy.get_name())
+            publishers, subscribers, _ = master.getSystemState()
+            types = dict(master.getTopicTypes())
+        except (OSError, rosgraph.MasterException):
+            return f'no master at {rosgraph.get_master_uri()}'
+        return why_nothing_is_heard(
+            self._plan.encoding, {topic: set(nodes) for topic, nodes in publishers},
+            {topic: set(nodes) for topic, nodes in subscribers}, types,
+            self._plan.subscribe == 'used')
+
     def _train(self) -> bool:
         """Learn from what there is; return False, and want more, if that is not enough."""
         held = self._folder.hours
-        progress = f'{_length(held)} of {_starts(self._folder.starts)}'
+        progress = f'{_length(held)} of {number_of(self._folder.starts, "start")} of the robot'
         rospy.loginfo('learning from %s', progress)
         self._announcer.say(DiagnosticStatus.OK, f'learning from {progress}', self._values())
         division = divide(self._folder.logs, self._plan.start_up)
@@ -156,7 +158,8 @@ class LearningNode:
             rospy.logwarn(problem)
 
     def _progress(self, hours: float, starts: int) -> str:
-        return f'learning: {_length(hours)} of {_length(self._wanted)}, {_starts(starts)}'
+        return (f'learning: {_length(hours)} of {_length(self._wanted)}, '
+                f'{number_of(starts, "start")} of the robot')
 
     def _say_progress(self, progress: str, problem: str) -> None:
         level = DiagnosticStatus.OK
@@ -184,7 +187,3 @@ class LearningNode:
 
 def _length(hours: float) -> str:
     return f'{hours:.1f} h' if hours >= 1.0 else f'{60.0 * hours:.1f} min'
-
-
-def _starts(number: int) -> str:
-    return f'{number} start of the robot' if number == 1 else f'{number} starts of the robot'

@@ -6,15 +6,13 @@ import os
 import signal
 import subprocess
 import time
-from types import TracebackType
-from typing import Optional, Type
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
 from self_awareness import EncodingRules, encoding_file
+from self_awareness.learning.logs import HEARD_S
 from self_awareness.learning.programs import executable
-from self_awareness.learning.silence import HEARD_S
 
 _END_S = 30.0  # to write the last file
 _REFUSED = 1
@@ -25,7 +23,7 @@ class RecorderCrash(Exception):
 
 
 class Recorder:
-    """Records event logs while its `with` block lasts; needs rospy.init_node().
+    """Records event logs until its `with` block ends; needs rospy.init_node().
 
     Args:
         prefix: of the files.
@@ -37,54 +35,39 @@ class Recorder:
 
     def __init__(self, prefix: str, encoding: EncodingRules, subscribe: str, robot_start: float,
                  lock: int) -> None:
+        self.problem = ''
+        """Why nothing is recorded, in its words; empty: it is, or has said nothing yet."""
+        self.events = 0
+        """How many it has heard."""
         self._prefix = prefix
-        self._encoding = encoding
-        self._subscribe = subscribe
-        self._robot_start = robot_start
-        self._lock = lock
-        self._problem = ''
-        self._process: Optional[subprocess.Popen] = None
         self._file = ''  # that is written
         self._heard = 0.0  # for how long, since the file began [s]
-        self._events = 0  # so far
         # [s of time.monotonic()]
         self._looked_at = self._event_at = time.monotonic()
-
-    def __enter__(self) -> Recorder:
         # Its diagnostics go through this node's: a name that nobody beats for any more would
         # become STALE when the monitor has taken over.
         diagnostics = rospy.resolve_name('~recording')
         self._subscriber = rospy.Subscriber(diagnostics, DiagnosticArray, self._on_diagnostics)
         name = f'{rospy.get_name()}_recorder'
-        rospy.set_param(f'{name}/encoding', encoding_file.values(self._encoding))
+        rospy.set_param(f'{name}/encoding', encoding_file.values(encoding))
         self._process = subprocess.Popen(
             ['setpriv', '--pdeathsig', 'INT', executable('record_events'),
-             f'__name:={os.path.basename(name)}', f'_output:={self._prefix}',
-             f'_subscribe:={self._subscribe}', f'_robot_start:={self._robot_start:.6f}',
+             f'__name:={os.path.basename(name)}', f'_output:={prefix}',
+             f'_subscribe:={subscribe}', f'_robot_start:={robot_start:.6f}',
              f'_diagnostics:={diagnostics}'],
-            pass_fds=(self._lock,))
+            pass_fds=(lock,))
+
+    def __enter__(self) -> Recorder:
         return self
 
-    def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException],
-                 trace: Optional[TracebackType]) -> None:
+    def __exit__(self, *_: object) -> None:
         self._subscriber.unregister()
-        assert self._process is not None
         self._process.send_signal(signal.SIGINT)
         try:
             self._process.wait(_END_S)
         except subprocess.TimeoutExpired:
             self._process.kill()  # the file can be mended
             self._process.wait()
-
-    @property
-    def problem(self) -> str:
-        """Why nothing is recorded, in its words; empty: it is, or has said nothing yet."""
-        return self._problem
-
-    @property
-    def events(self) -> int:
-        """How many it has heard."""
-        return self._events
 
     def silent_for(self) -> float:
         """Return for how long it has heard nothing [s]."""
@@ -100,7 +83,7 @@ class Recorder:
         now = time.monotonic()
         if newest != self._file:
             self._file, self._heard = newest, 0.0
-        elif newest and self._events and self.silent_for() <= HEARD_S:
+        elif newest and self.events and self.silent_for() <= HEARD_S:
             self._heard += now - self._looked_at
         self._looked_at = now
         return self._heard
@@ -112,7 +95,7 @@ class Recorder:
             ValueError: it refused what it was started with.
             RecorderCrash: it ended by itself.
         """
-        code = None if self._process is None else self._process.poll()
+        code = self._process.poll()
         if code == _REFUSED:
             raise ValueError('the recorder cannot run; it says why above')
         if code:
@@ -121,7 +104,7 @@ class Recorder:
 
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
         for status in array.status:
-            self._problem = '' if status.level == DiagnosticStatus.OK else status.message
+            self.problem = '' if status.level == DiagnosticStatus.OK else status.message
             events = next((int(pair.value) for pair in status.values if pair.key == 'events'), 0)
-            if events > self._events:
-                self._events, self._event_at = events, time.monotonic()
+            if events > self.events:
+                self.events, self._event_at = events, time.monotonic()

@@ -18,15 +18,17 @@ _PLAIN = ('heard', 'not heard yet', 'in the graph')  # states that the other col
 
 def head(said: Said, width: int, paused: bool) -> List[Line]:
     """Return what is said of the whole."""
-    if not said.heard:
+    if said.heard_at is None:
         return [('head', 'waiting for the monitor ...')]
     verdict = said.verdict
-    level = LEVELS[said.level]
-    lines = [(level, cut(f'{level}  {said.message}', width)) if said.told
-             else ('head', 'waiting for the monitor on /diagnostics ...')]
     if said.silent_for > STALE_S:
         lines = [('STALE', cut('STALE  the monitor has not been heard for '
                                f'{said.silent_for:.0f} s; it said: {said.message}', width))]
+    elif said.level is None:
+        lines = [('head', 'waiting for the monitor on /diagnostics ...')]
+    else:
+        level = LEVELS[said.level]
+        lines = [(level, cut(f'{level}  {said.message}', width))]
     if verdict is not None:
         state = 'paused' if paused else 'settling' if verdict.settling else ''
         limit = 'threshold' if verdict.threshold > 0 else 'limit'

@@ -23,15 +23,9 @@ _IN_GRAPH = 'in the graph'  # the state of a node that the model does not know
 
 
 class Said:
-    """All that is shown of a monitor."""
+    """All that is shown of a monitor, by its full name; the clock is steady [s]."""
 
     def __init__(self, monitor: str, clock: Callable[[], float] = time.monotonic) -> None:
-        """Nothing was said yet.
-
-        Args:
-            monitor: its full name.
-            clock: steady time [s].
-        """
         self._clock = clock
         self.heard_at: Optional[float] = None
         """When the monitor said something last; None: it has not."""
@@ -69,29 +63,19 @@ class Said:
         self.incidents = list(incidents.incidents)
 
     @property
-    def heard(self) -> bool:
-        """Whether the monitor has said anything."""
-        return self.heard_at is not None
-
-    @property
     def silent_for(self) -> float:
         """How long the monitor has said nothing [s]; 0: it never did."""
         return 0.0 if self.heard_at is None else self._clock() - self.heard_at
 
     @property
-    def told(self) -> bool:
-        """Whether the monitor has said on /diagnostics how the whole is."""
-        return _WHOLE in self._statuses
-
-    @property
-    def level(self) -> int:
-        """Of the whole, as /diagnostics has it: what is muted is OK."""
-        return level_of(self._statuses[_WHOLE]) if self.told else 0
+    def level(self) -> Optional[int]:
+        """Of the whole, as /diagnostics has it: what is muted is OK; None: it was not told yet."""
+        return level_of(self._statuses[_WHOLE]) if _WHOLE in self._statuses else None
 
     @property
     def message(self) -> str:
         """Of the whole, in words; empty: there is none yet."""
-        return str(self._statuses[_WHOLE].message) if self.told else ''
+        return str(self._statuses[_WHOLE].message) if _WHOLE in self._statuses else ''
 
     @property
     def score(self) -> float:
@@ -149,13 +133,10 @@ class Said:
             f'{self._value(_ITSELF, "share of a core spent")} cores')
 
     def components(self, sort: str, pattern: str) -> List[Any]:
-        """Return the components (ComponentState) whose names hold a pattern, sorted.
+        """Return the components (ComponentState) whose names hold a pattern, by one of SORTS.
 
-        Those that the model does not know come last.
-
-        Args:
-            sort: one of SORTS.
-            pattern: a part of the name, or one with `*`; empty: all.
+        Those that the model does not know come last. A pattern is a part of the name, or one with
+        `*`; empty: all.
         """
         asked = pattern if '*' in pattern else f'*{pattern}*'
         keys: Dict[str, Callable[[Any], Any]] = {

@@ -4,6 +4,7 @@ from __future__ import annotations
 import queue
 import threading
 import time
+from functools import partial
 from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import urwid
@@ -135,16 +136,12 @@ class Screen:
 
     def _on_accept(self) -> None:
         alarm, strangers = self._shown.standing, self._shown.strangers
-
-        def accept() -> str:
-            return self._calls['a'](alarm, strangers)
-
         if not alarm and not strangers:
             self._say('nothing stands, and nobody is new')
             return
         # What is shown may change before the key is seen, and an alarm has named more than its
         # last window does.
-        self._if_yes = accept
+        self._if_yes = partial(self._calls['a'], alarm, strangers)
         if not alarm:
             self._say(f'accept {len(strangers)} that are new? (y/n)')
             return

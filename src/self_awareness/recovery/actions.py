@@ -2,14 +2,14 @@
 from __future__ import annotations
 
 import threading
+from contextlib import suppress
 from functools import lru_cache
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import rospy
 from std_srvs.srv import Trigger
 
-from self_awareness.recovery.launchers import Launchers
-from self_awareness.recovery.node_calls import NodeCalls
+from self_awareness.recovery.node_calls import Launchers, NodeCalls
 from self_awareness.recovery.node_process import (NodeProcess, NotItsProcess, line_of,
                                                   process_of)
 from self_awareness.recovery.rules import Call, Step
@@ -17,7 +17,6 @@ from self_awareness.recovery.xml_rpc import NoAnswer
 
 _SERVICE_S = 10.0
 _OF_ROS = {'/rosout'}
-_NOT_HEARD = 'not heard so far'
 _ENDED = 'has ended already; roslaunch starts it again'
 
 
@@ -45,17 +44,16 @@ class Actions:
         # By node, its process when it was well, and its address then. Guarded by _lock.
         self._known: Dict[str, Tuple[NodeProcess, str]] = {}
         # By node, why it cannot be stopped. Guarded by _lock.
-        self._refused = {node: f'{node}: {_NOT_HEARD}' for node in nodes}
+        self._refused = {node: f'{node}: not heard so far' for node in nodes}
         self._asking: Dict[str, threading.Thread] = {}  # by service, who waits for its answer
 
     def look(self) -> None:
         """Ask the nodes which processes they are, and remember it; it may take a while."""
         launchers = lru_cache(maxsize=None)(self._calls.launchers)  # asked only if needed, once
         for node in self._nodes:
-            try:
+            # What hangs is remembered as it was; what is refused is told by refused().
+            with suppress(NoAnswer, NotItsProcess):
                 self._look_at(node, self._calls.address(node), launchers)
-            except (NoAnswer, NotItsProcess):
-                pass  # what hangs is remembered as it was; what is refused is told by refused()
 
     def refused(self) -> List[str]:
         """Return which nodes cannot be stopped, and why."""
@@ -65,10 +63,7 @@ class Actions:
     def do(self, step: Step, culprit: str, mute: Callable[[str], None]) -> str:
         """Do a step; return what came of it, in words.
 
-        Args:
-            step: to be done.
-            culprit: the component that is to blame.
-            mute: called with each other node before it is stopped.
+        Before it stops another node than the culprit, it has that one muted.
 
         Raises:
             ActionError: it could not be done, or not to its end.
@@ -76,9 +71,10 @@ class Actions:
         self._check_hold()
         if isinstance(step, Call):
             answer = self.ask(step.service, Trigger)
+            told = f'{step.service} says: {answer.message}'
             if not answer.success:
-                raise ActionError(f'{step.service} says: {answer.message}')
-            return f'{step.service} says: {answer.message}' if answer.message else 'called'
+                raise ActionError(told)
+            return told if answer.message else 'called'
         results: List[str] = []
         try:
             self._check(step.nodes)
@@ -187,28 +183,31 @@ class Actions:
             NoAnswer: the master does not know it, or does not answer.
             NotItsProcess: it may not be stopped, or its process is not known.
         """
+        with self._lock:
+            known, address_then = self._known.get(node, (None, ''))
         try:
             address = self._calls.address(node)
         except NoAnswer:
-            with self._lock:
-                known = self._known.get(node)
-            if known is not None and not known[0].runs():
-                return None
-            raise
-        try:
+            if known is None or known.runs():
+                raise
+            return None
+        with suppress(NoAnswer):
             return address, self._look_at(node, address), False
-        except NoAnswer:
-            process = self._hanging(node, address)
-            return None if process is None else (address, process, True)
+        if not self._calls.is_here(address):
+            raise NotItsProcess(f'{node} does not answer, and runs on another machine ({address})')
+        if known is None or address_then != address:
+            raise NotItsProcess(f'{node} does not answer, and has not since it was started: its '
+                                'process is not known')
+        if not known.runs():
+            return None
+        self._check_launched(node, known, self._calls.launchers)
+        return address, known, True
 
     def _look_at(self, node: str, address: str,
                  launchers: Optional[Callable[[], Launchers]] = None) -> Optional[NodeProcess]:
         """Return the process of a node that is well, and remember it; None: it is elsewhere.
 
-        Args:
-            node, address: its own.
-            launchers: returns who starts nodes, which is not asked for a process that is known.
-                None: to be asked for in any case.
+        Who starts nodes is not asked for a process that is known, if `launchers` is given.
 
         Raises:
             NoAnswer: it does not answer.
@@ -218,8 +217,8 @@ class Actions:
         try:
             process = process_of(node, pid) if self._calls.is_here(address) else None
             with self._lock:
-                known = self._known.get(node)
-            if launchers is None or process is None or known is None or known[0] != process:
+                known, _ = self._known.get(node, (None, ''))
+            if launchers is None or process is None or known != process:
                 self._check_launched(node, process, launchers or self._calls.launchers)
         except NotItsProcess as error:
             with self._lock:
@@ -234,11 +233,7 @@ class Actions:
 
     def _check_launched(self, node: str, process: Optional[NodeProcess],
                         launchers: Callable[[], Launchers]) -> None:
-        """Look whether a node would be started again, and its end does no further harm.
-
-        Raises:
-            NotItsProcess: not so.
-        """
+        """Raise NotItsProcess unless a node is started again, and its end does no further harm."""
         try:
             started = launchers()
         except NoAnswer as error:
@@ -247,21 +242,3 @@ class Actions:
         why_not = started.why_not(node, None if process is None else line_of(process.pid))
         if why_not:
             raise NotItsProcess(why_not)
-
-    def _hanging(self, node: str, address: str) -> Optional[NodeProcess]:
-        """Return the process of a node that does not answer; None: it has ended.
-
-        Raises:
-            NotItsProcess: it is not known, or may not be stopped.
-        """
-        if not self._calls.is_here(address):
-            raise NotItsProcess(f'{node} does not answer, and runs on another machine ({address})')
-        with self._lock:
-            process, address_then = self._known.get(node, (None, ''))
-        if process is None or address_then != address:
-            raise NotItsProcess(f'{node} does not answer, and has not since it was started: its '
-                                'process is not known')
-        if not process.runs():
-            return None
-        self._check_launched(node, process, self._calls.launchers)
-        return process

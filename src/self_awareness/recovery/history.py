@@ -5,7 +5,7 @@ import json
 import os
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any, Dict, List, Sequence
+from typing import Any, Dict, List, Optional
 
 from self_awareness import printable, yaml_file
 from self_awareness.output_files import replacing
@@ -14,7 +14,6 @@ from self_awareness.yaml_section import Section
 MOST = 200
 """Actions that are kept: the last ones, all of an hour at least (limits of the rules)."""
 ENDING = '.actions'
-ENDED_MEANWHILE = 'the recovery ended meanwhile'
 
 _MOST_STAMP = 2 ** 63
 _LONGEST_RESULT = 500
@@ -23,18 +22,9 @@ _BOOT_ID = Path('/proc/sys/kernel/random/boot_id')
 
 @dataclass(frozen=True)
 class Action:
-    """A step that was begun.
+    """A step that was begun: what RecoveryAction.msg tells of it, with `begin` in ns since 1970.
 
     Args:
-        incident: id of the monitor's incident.
-        component, kind: what the incident blames, and for what.
-        step, steps: its number, 1 the first, and that of all.
-        action: what it does, in words.
-        begin: [ns since 1970].
-        dry_run: nothing was done.
-        over: it is not being done any more.
-        success: it was done, which need not have helped.
-        result: what came of it, in words.
         steady: when it was begun by the steady clock of this boot of the machine, which nobody
             sets [ns]; 0: it was another boot.
     """
@@ -86,6 +76,11 @@ class History:
     actions: List[Action] = field(default_factory=list)
     hold: Hold = Hold()
 
+    @property
+    def under_way(self) -> Optional[Action]:
+        """The last one, if it is still being done."""
+        return self.actions[-1] if self.actions and not self.actions[-1].over else None
+
     def begin(self, action: Action) -> None:
         """Add an action."""
         self.actions = [*self.actions[1 - MOST:], action]
@@ -118,8 +113,8 @@ class History:
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with replacing(path) as temporary:
             # YAML, which reads it, knows no pairs of escapes.
-            Path(temporary).write_text(json.dumps(values, indent=1, ensure_ascii=False) + '\n',
-                                       encoding='utf-8')
+            text = json.dumps(values, indent=1, ensure_ascii=False) + '\n'
+            Path(temporary).write_text(text, encoding='utf-8')
 
 
 def load(path: str) -> History:
@@ -142,19 +137,8 @@ def load(path: str) -> History:
     return read
 
 
-def ended(actions: Sequence[Action]) -> List[Action]:
-    """Return actions of another start, none of which is being done any more."""
-    return [each if each.over else replace(each, over=True, result=ENDED_MEANWHILE)
-            for each in actions]
-
-
 def beside_incidents(directory: str, monitor: str) -> str:
-    """Return the file's path.
-
-    Args:
-        directory: the monitor's parameter ~recorder/directory.
-        monitor: its full name.
-    """
+    """Return the file's path, by a monitor's full name and its ~recorder/directory."""
     name = monitor.lstrip('/').replace('/', '_')
     home = os.environ.get('ROS_HOME') or '~/.ros'
     if directory.startswith('$ROS_HOME/'):

@@ -10,7 +10,6 @@ HOUR_S = 3600.0
 SHORTEST_HEALING_S = 5.0
 """What is gone for less than this is not healed [s]: a node that dies again and again is there for
 moments."""
-_MOST_DOUBLINGS = 16
 
 
 @dataclass(frozen=True)
@@ -35,14 +34,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Order:
-    """A step that is to be done now.
-
-    Args:
-        rule: whose step it is.
-        number: of the step, 1 the first.
-        step: itself.
-        fault: why.
-    """
+    """A step of a rule that is to be done now, its number (1 the first), and why."""
 
     rule: Rule
     number: int
@@ -55,7 +47,6 @@ class Climb:
     """How far a rule is with what it mends.
 
     Args:
-        rule: itself.
         next_at: when a step may come, if the fault stands then [s].
         tried: steps so far.
         gone_since: when the fault was gone; None: it is there.
@@ -70,16 +61,13 @@ class Climb:
 
 
 class Ladder:
-    """Decides on one step after the other; times are steady [s], and never go back.
+    """Decides by rules on one step after the other; times are steady [s], and never go back.
 
     A fault has to stand for `delay` before the first step, and who has died must not come within
     the `delay` before any step. A step that did not help in time is followed by the next one,
     the last one by itself; each has twice the time of the one before. A rule that has done its
     steps of an hour gives up, until the fault is healed: gone for `delay`, and for
     SHORTEST_HEALING_S at least, without interruption.
-
-    Args:
-        rules: what may be done.
     """
 
     def __init__(self, rules: Rules) -> None:
@@ -93,12 +81,7 @@ class Ladder:
         self._held_until = float('-inf')
 
     def restore(self, component: str, at: float) -> None:
-        """Count a step of before the start; to be called in the order of time.
-
-        Args:
-            component: of the rule that did it.
-            at: when [s], at most now.
-        """
+        """Count a step of before the start: when it was done [s], and for which component."""
         self._steps.append((at, [rule for rule in self._rules.rules
                                  if rule.component == component]))
 
@@ -139,7 +122,7 @@ class Ladder:
         assert self._busy is not None
         order, self._busy = self._busy, None
         climb = self._climbs[order.rule]
-        waits_until = now + self._rules.wait * 2.0 ** min(climb.tried - 1, _MOST_DOUBLINGS)
+        waits_until = now + self._rules.wait * 2.0 ** (climb.tried - 1)
         for rule, each in self._climbs.items():
             if rule.component == order.rule.component:
                 each.next_at = max(each.next_at, waits_until)
@@ -179,12 +162,11 @@ class Ladder:
     def _limit_of(self, now: float, rule: Rule) -> str:
         """Return why a rule may do nothing more; empty: it may."""
         self._steps = [each for each in self._steps if each[0] > now - HOUR_S]
-        own = sum(rule in rules for _, rules in self._steps)
-        for number, limit, whose in ((own, self._rules.limit, ''),
-                                     (len(self._steps), self._rules.limit_of_all,
-                                      ' of all rules')):
-            if number >= limit:
-                return f'{number} actions{whose} in an hour, which is the limit'
+        own, of_all = sum(rule in rules for _, rules in self._steps), len(self._steps)
+        if own >= self._rules.limit:
+            return f'{own} actions in an hour, which is the limit'
+        if of_all >= self._rules.limit_of_all:
+            return f'{of_all} actions of all rules in an hour, which is the limit'
         return ''
 
     def _order(self, now: float, rule: Rule, climb: Climb, fault: Fault) -> Order:

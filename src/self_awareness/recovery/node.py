@@ -32,16 +32,12 @@ _DIRECTORY = '$ROS_HOME/self_awareness/$NAME'  # the monitor's default
 
 
 class Recovery:
-    """Does what the rules say; needs rospy.init_node().
+    """Does what the rules say about what a monitor (full name) blames; needs rospy.init_node().
 
     Subscribes to `status` and `incidents` of the monitor. Publishes `~actions` (RecoveryActions,
     latched) and a status on /diagnostics, every second and at once when it changes. Serves `~hold`
     (Maintenance): nothing is done for a while. What it has done is kept in a file beside that of
     the monitor's incidents (history).
-
-    Args:
-        rules: what may be done.
-        monitor: full name of the monitor.
     """
 
     def __init__(self, rules: Rules, monitor: str) -> None:
@@ -54,13 +50,12 @@ class Recovery:
         self._watch = Watch()  # Guarded by _lock.
         self._listeners: Optional[Dict[str, Set[str]]] = None  # Guarded by _lock.
         self._ladder = Ladder(rules)  # Guarded by _lock.
-        self._hold: Optional[Hold] = None  # as told, and not kept yet. Guarded by _lock.
         self._held = Hold()  # Guarded by _lock.
         self._done: Optional[Tuple[bool, str]] = None  # Guarded by _lock.
         self._calls = NodeCalls(rospy.get_name())
         self._actions = Actions(self._calls, rules.nodes, rules.grace, self._why_held)
         self._hardware_id = str(rospy.get_param('~hardware_id', 'none'))
-        self._said: Tuple[int, str] = (words.OK, '')
+        self._said_level = words.OK
         self._said_at = float('-inf')
         self._diagnostics = rospy.Publisher('/diagnostics', DiagnosticArray, queue_size=10)
         # By its type, monitors know this node for one of this package, whatever its name is.
@@ -85,17 +80,15 @@ class Recovery:
     def _advance(self, now: float) -> None:
         if not self._path:
             self._read()
-        hold = None
         with self._lock:
             done, self._done = self._done, None
             if done is not None:
                 self._ladder.done(now)
             faults = self._watch.faults(now, self._listeners) if self._path else None
             order = self._ladder.advance(now, faults)
-            if self._path:  # else it is kept when it is known where
-                hold, self._hold = self._hold, None
-        if hold is not None:
-            self._history.hold = hold
+            held = self._held
+        if self._path and self._history.hold != held:
+            self._history.hold = held
             self._keep()
         if done is not None:
             self._end(*done)
@@ -104,22 +97,32 @@ class Recovery:
         self._say(now)
 
     def _read(self) -> None:
-        """Read what was done before the start, once it is known where that is kept."""
+        """Read what was done before the start, once it is known where that is kept.
+
+        The ladder has to know of its last hour, and of a hold, unless another one was told since.
+        """
         with self._lock:
-            path = self._found_path
-        if not path:
+            self._path = self._found_path
+        if not self._path:
             return
         try:
-            self._history = history.load(path)
+            self._history = history.load(self._path)
         except (OSError, ValueError) as error:
             rospy.logwarn('what was done before the start is not known: %s', error)
-        self._path = path
-        self._restore(time.monotonic_ns(), time.time_ns())
-        actions = self._history.actions
-        self._history.actions = history.ended(actions)
-        if self._history.actions == actions:
+            return
+        steady, wall = time.monotonic_ns(), time.time_ns()
+        left = min(self._history.hold.left(steady, wall), nanoseconds(LONGEST_HOLD_S))
+        with self._lock:
+            for age, action in zip(self._history.ages(steady, wall), self._history.actions):
+                if age < HOUR_S * SECOND_NS and (self._rules.dry_run or not action.dry_run):
+                    self._ladder.restore(action.component, (steady - age) / SECOND_NS)
+            if left > 0 and self._held == Hold():
+                self._held = Hold(wall + left, steady + left)
+                self._ladder.hold(self._held.steady / SECOND_NS)
+        if self._history.under_way is None:
             self._publish()
         else:
+            self._history.end(False, 'the recovery ended meanwhile')
             self._keep()
 
     def _begin(self, order: Order) -> None:
@@ -183,19 +186,20 @@ class Recovery:
             blind = self._watch.why_blind(now) or (
                 '' if self._path else 'the master does not say where the monitor keeps its files')
             until = to_the_second(self._held.until)
-            said = words.status(now, len({rule.component for rule in self._rules.rules}),
-                                self._ladder.climbs(), self._history.actions, blind,
-                                f'until {until}{self._held.by}' if self._is_held() else '')
-        if said[0] == self._said[0] and now - self._said_at < _HEARTBEAT_S:
+            level, message = words.status(
+                now, len({rule.component for rule in self._rules.rules}), self._ladder.climbs(),
+                self._history.actions, blind,
+                f'until {until}{self._held.by}' if self._is_held() else '')
+        if level == self._said_level and now - self._said_at < _HEARTBEAT_S:
             return
-        if said[0] == words.ERROR != self._said[0]:
-            rospy.logerr(said[1])
-        self._said, self._said_at = said, now
+        if level == words.ERROR != self._said_level:
+            rospy.logerr(message)
+        self._said_level, self._said_at = level, now
+        shown = words.values(self._history.actions, self._actions.refused(), self._rules.dry_run)
         array = DiagnosticArray()
         array.header.stamp = rospy.Time.now()
-        shown = words.values(self._history.actions, self._actions.refused(), self._rules.dry_run)
         array.status = [DiagnosticStatus(
-            said[0], status_name(rospy.get_name(), 'recovery'), said[1], self._hardware_id,
+            level, status_name(rospy.get_name(), 'recovery'), message, self._hardware_id,
             [KeyValue(key, value) for key, value in shown.items()])]
         self._diagnostics.publish(array)
 
@@ -258,15 +262,15 @@ class Recovery:
         hold = Hold(time.time_ns() + nanoseconds(request.duration),
                     time.monotonic_ns() + nanoseconds(request.duration), f', by {by}')
         with self._lock:
-            self._held = self._hold = hold
+            self._held = hold
             self._ladder.hold(hold.steady / SECOND_NS)
         answer = (f'does nothing until {to_the_second(hold.until)}' if request.duration
                   else 'goes on')
         if request.duration and not self._path:
             answer += '; not kept yet, so another start of the recovery would not know it'
-        under_way = [words.what(each) for each in self._history.actions[-1:] if not each.over]
-        if request.duration and under_way:
-            answer += f'; still ends what it does: {under_way[0]}'
+        under_way = self._history.under_way
+        if request.duration and under_way is not None:
+            answer += f'; still ends what it does: {words.what(under_way)}'
         rospy.logwarn('%s, by %s', answer, by)
         return MaintenanceResponse(True, answer)
 
@@ -277,19 +281,3 @@ class Recovery:
 
     def _is_held(self) -> bool:
         return time.monotonic_ns() < self._held.steady
-
-    def _restore(self, steady: int, wall: int) -> None:
-        """Let the ladder know of the hour before the start, and of the hold.
-
-        Args:
-            steady, wall: what the clocks say now [ns].
-        """
-        ages = self._history.ages(steady, wall)
-        left = min(self._history.hold.left(steady, wall), nanoseconds(LONGEST_HOLD_S))
-        with self._lock:
-            for age, action in sorted(zip(ages, self._history.actions), key=lambda pair: -pair[0]):
-                if age < HOUR_S * SECOND_NS and (self._rules.dry_run or not action.dry_run):
-                    self._ladder.restore(action.component, (steady - age) / SECOND_NS)
-            if left > 0 and self._hold is None:  # what is told after the start counts
-                self._held = Hold(wall + left, steady + left)
-                self._ladder.hold(self._held.steady / SECOND_NS)

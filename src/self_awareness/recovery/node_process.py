@@ -29,12 +29,7 @@ class NotItsProcess(ValueError):
 
 @dataclass(frozen=True)
 class NodeProcess:
-    """A process, told from others that had or will have its id.
-
-    Args:
-        pid: its id.
-        start: when it was started, by the kernel's count.
-    """
+    """A process, told from others that had or will have its id by when the kernel started it."""
 
     pid: int
     start: int
@@ -46,12 +41,7 @@ class NodeProcess:
             'Z', 'X')
 
     def ends_within(self, seconds: float, check: Callable[[], None]) -> bool:
-        """Wait for its end; return whether it came in time.
-
-        Args:
-            seconds: to wait at most.
-            check: called again and again meanwhile; it may raise what ends the wait.
-        """
+        """Wait so long for its end; return whether it came. What `check` raises ends the wait."""
         deadline = time.monotonic() + seconds
         while self.runs():
             check()
@@ -63,13 +53,8 @@ class NodeProcess:
     def end(self, grace: float, check: Callable[[], None] = lambda: None) -> str:
         """End it by SIGTERM, and by SIGKILL if it has not ended after the grace [s].
 
-        Args:
-            grace: [s].
-            check: called before each signal, and while its end is awaited; it may raise what is
-                to prevent the next signal.
-
-        Returns:
-            what ended it, in words.
+        It calls `check` before each signal, and while it waits: what that raises prevents the
+        next signal. It returns what ended the process, in words.
 
         Raises:
             OSError: it may not be sent signals, or does not even end by SIGKILL.
@@ -87,10 +72,6 @@ class NodeProcess:
 
 def process_of(node: str, pid: int) -> NodeProcess:
     """Return the process that a node says it is, after a look whether that is so.
-
-    Args:
-        node: its full name.
-        pid: the process id, as the node tells it.
 
     Raises:
         NotItsProcess: there is none, it was not started with the name of the node, or not by

@@ -55,12 +55,9 @@ Step = Union[Call, Stop]
 
 @dataclass(frozen=True)
 class Rule:
-    """What is done about some kinds of incidents of one component.
+    """What is done about some kinds (of KINDS) of incidents that blame one component.
 
-    Args:
-        component: that is to blame, by its full name.
-        kinds: of KINDS, at least one.
-        steps: one after the other, until one has helped.
+    The steps follow each other, until one has helped.
     """
 
     component: str
@@ -100,12 +97,7 @@ class Rules:
 
 
 def load(path: str, monitor: str, recovery: str) -> Rules:
-    """Return the rules of a file.
-
-    Args:
-        path: of the file.
-        monitor: full name of the monitor, which may not be stopped.
-        recovery: that of the recovery itself, likewise.
+    """Return the rules of a file, which may stop neither monitor nor recovery (full names).
 
     Raises:
         OSError: the file cannot be read.
@@ -118,23 +110,23 @@ def load(path: str, monitor: str, recovery: str) -> Rules:
                    recovery: 'it is the recovery itself'}
     default = Rules(())
     with Section({} if data is None else data, path) as section:
-        delay = section.number('delay', 0.0, _DAY_S, default.delay)
-        wait = section.number('wait', 1.0, _DAY_S, default.wait)
-        grace = section.number('grace', 0.1, _LONGEST_GRACE_S, default.grace)
-        limit = _limit(section, 'limit', default.limit)
-        limit_of_all = _limit(section, 'limit_of_all', default.limit_of_all)
-        dry_run = section.boolean('dry_run', default.dry_run)
-        found = [_rule(each, untouchable) for each in section.sections('rules')]
-        if len(found) > MOST_RULES:
-            section.fail('rules', f'{len(found)} of them; at most {MOST_RULES} are allowed: leave '
-                         'the least important ones to people')
-        taken = Counter((rule.component, kind) for rule in found for kind in rule.kinds)
+        read = Rules(
+            delay=section.number('delay', 0.0, _DAY_S, default.delay),
+            wait=section.number('wait', 1.0, _DAY_S, default.wait),
+            grace=section.number('grace', 0.1, _LONGEST_GRACE_S, default.grace),
+            limit=_limit(section, 'limit', default.limit),
+            limit_of_all=_limit(section, 'limit_of_all', default.limit_of_all),
+            dry_run=section.boolean('dry_run', default.dry_run),
+            rules=tuple(_rule(each, untouchable) for each in section.sections('rules')))
+        if len(read.rules) > MOST_RULES:
+            section.fail('rules', f'{len(read.rules)} of them; at most {MOST_RULES} are allowed: '
+                         'leave the least important ones to people')
+        taken = Counter((rule.component, kind) for rule in read.rules for kind in rule.kinds)
         for (component, kind), number in taken.items():
             if number > 1:
                 section.fail('rules', f'two rules for {component} {kind}; give their steps in one '
                              'rule')
-    return Rules(tuple(found), float(delay), float(wait), float(grace), limit, limit_of_all,
-                 dry_run)
+    return read
 
 
 def _limit(section: Section, key: str, default: int) -> int:

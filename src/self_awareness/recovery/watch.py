@@ -140,13 +140,8 @@ class Watch:
     def _dead_since(self, now: float, name: str, suspects: Sequence[Any], named: float) -> float:
         """Return since when what has died of a component is known not to have come [s].
 
-        Who works at half its rate has died at the end of every gap, and comes again.
-
-        Args:
-            now: [s].
-            name: of the component.
-            suspects: that a window names of it.
-            named: since when windows name it [s]; it counts where a silence is not known.
+        Who works at half its rate has died at the end of every gap, and comes again. Where the
+        window does not tell for how long it has been silent, that is since windows name it.
         """
         died = [each for each in suspects if each.kind in _DIED]
         silent = [each.silence for each in died if not math.isnan(each.silence)]

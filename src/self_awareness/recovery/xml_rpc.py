@@ -35,7 +35,10 @@ def ask(whom: str, address: str, within: float, most: int, method: str, *words: 
         url = urlparse(address)
         if url.scheme != 'http' or not url.hostname:
             raise ValueError(f'{address!r} is no address')
-        with closing(_Connection(url.netloc, time.monotonic() + within, most)) as connection:
+        with closing(HTTPConnection(url.netloc, timeout=within)) as connection:
+            deadline = time.monotonic() + within
+            connection.connect()
+            connection.sock = _Bounded(connection.sock, deadline, most)
             connection.request('POST', url.path or '/', dumps(words, method).encode(),
                                {'Content-Type': 'text/xml'})
             response = connection.getresponse()
@@ -52,38 +55,25 @@ def ask(whom: str, address: str, within: float, most: int, method: str, *words: 
     return value
 
 
-class _Socket(socket.socket):
-    """Reads until a deadline (steady [s]), and a number of bytes at most."""
+class _Bounded(socket.socket):
+    """Takes the place of a socket; reads until a deadline (steady [s]), and so much at most."""
 
-    deadline = 0.0
-    left = 0
+    def __init__(self, connected: socket.socket, deadline: float, most: int) -> None:
+        super().__init__(fileno=connected.detach())
+        self._deadline = deadline
+        self._left = most
+        self._set_timeout()
 
     def recv_into(self, *arguments: Any) -> int:
-        self.settimeout(_time_to(self.deadline))
+        self._set_timeout()
         number = super().recv_into(*arguments)
-        self.left -= number
-        if self.left < 0:
+        self._left -= number
+        if self._left < 0:
             raise OSError('its answer is too long')
         return number
 
-
-class _Connection(HTTPConnection):
-
-    def __init__(self, host: str, deadline: float, most: int) -> None:
-        super().__init__(host, timeout=_time_to(deadline))
-        self._deadline = deadline
-        self._most = most
-
-    def connect(self) -> None:
-        super().connect()
-        bounded = _Socket(fileno=self.sock.detach())
-        bounded.deadline, bounded.left = self._deadline, self._most
-        bounded.settimeout(_time_to(self._deadline))
-        self.sock = bounded
-
-
-def _time_to(deadline: float) -> float:
-    left = deadline - time.monotonic()
-    if left <= 0.0:
-        raise socket.timeout('timed out')
-    return left
+    def _set_timeout(self) -> None:
+        left = self._deadline - time.monotonic()
+        if left <= 0.0:
+            raise socket.timeout('timed out')
+        self.settimeout(left)

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
 import pytest
-from conftest import Message, write_bag
+from conftest import Message
+from recorded_logs import write_log
 
-from self_awareness import Acceptance, EncodingRules, EventLogWriter, TrainedModel, accepted_file
+from self_awareness import Acceptance, TrainedModel, accepted_file
 from self_awareness.commands import calibrate, info, learn_more, train
 
 _DAY_S = 86400.0
@@ -33,21 +34,11 @@ def _robot(start: float, seed: int, period: float = 0.05, length: float = 130.0,
                   and (each[1] != dead or each[0] < start + dead_from))
 
 
-def _log(path: Path, messages: List[Message]) -> str:
-    bag = path.with_suffix('.recorded')
-    write_bag(bag, messages)
-    writer = EventLogWriter(str(path))
-    writer.add_bag(str(bag), EncodingRules.defaults())
-    writer.close()
-    bag.unlink()
-    return str(path)
-
-
 @pytest.fixture(scope='module')
 def learned(tmp_path_factory: pytest.TempPathFactory) -> Tuple[str, List[str]]:
     """A calibrated model, and the recordings that it comes from."""
     folder = tmp_path_factory.mktemp('learned')
-    logs = [_log(folder / f'{day}.bag', _robot(1000.0 + _DAY_S * day, day, length=200.0))
+    logs = [write_log(folder / f'{day}.bag', _robot(1000.0 + _DAY_S * day, day, length=200.0))
             for day in range(4)]
     model = str(folder / 'robot.model')
     assert train.main([*logs[:3], '-o', model]) == 0
@@ -77,7 +68,7 @@ def _kept(model: str) -> Path:
 def test_a_robot_that_stays_as_it_is_does_not_drift(model: str, capsys) -> None:
     folder = _kept(model)
     for day in range(8):
-        _log(folder / f'{day}.bag', _robot(_DAY_S * (10 + day), 10 + day))
+        write_log(folder / f'{day}.bag', _robot(_DAY_S * (10 + day), 10 + day))
     age = _age(capsys, model, '--age')
     assert (age['samples'], age['recordings'], age['drifting']) == (8, 8, [])
     assert {each['component'] for each in age['components']} == {'/laser', '/slam', '/battery'}
@@ -95,7 +86,7 @@ def test_a_rate_that_falls_from_day_to_day_is_told_before_the_alarm(model: str, 
     period = 0.05
     for day in range(40):
         period *= 1.01 if day >= 12 else 1.0
-        _log(folder / f'{day:02d}.bag', _robot(_DAY_S * (10 + day), 10 + day, period))
+        write_log(folder / f'{day:02d}.bag', _robot(_DAY_S * (10 + day), 10 + day, period))
     age = _age(capsys, model, '--age')
     told = min(each['told_by_sample'] for each in age['components'] if each['told_by_sample'])
     assert age['drifting'] and 12 < told <= age['samples']
@@ -112,16 +103,16 @@ def test_recordings_of_a_start_are_one_sample_a_day(model: str, capsys) -> None:
     begins = [_DAY_S * 10, _DAY_S * 10 + 140.0,  # one start: 10 s lie between them
               _DAY_S * 10 + 600.0]               # another one
     for number, begin in enumerate(begins):
-        _log(folder / f'{number}.bag', _robot(begin, number))
+        write_log(folder / f'{number}.bag', _robot(begin, number))
     age = _age(capsys, model, '--age')
     assert (age['recordings'], age['samples']) == (3, 2)
 
 
 def test_what_is_not_normal_or_was_learned_says_nothing(model: str, learned: Tuple[str, List[str]],
                                                         tmp_path: Path, capsys) -> None:
-    dead = _log(tmp_path / 'dead.bag', _robot(_DAY_S * 10, 1, dead='/laser'))
-    short = _log(tmp_path / 'short.bag', _robot(_DAY_S * 11, 2, length=50.0))
-    good = _log(tmp_path / 'good.bag', _robot(_DAY_S * 12, 3))
+    dead = write_log(tmp_path / 'dead.bag', _robot(_DAY_S * 10, 1, dead='/laser'))
+    short = write_log(tmp_path / 'short.bag', _robot(_DAY_S * 11, 2, length=50.0))
+    good = write_log(tmp_path / 'good.bag', _robot(_DAY_S * 12, 3))
     age = _age(capsys, model, '--age', *learned[1], dead, short, good)
     assert age['recordings'] == 1
     reasons = {Path(each['recording']).name: each['reason'] for each in age['left_out']}
@@ -135,8 +126,8 @@ def test_more_is_learned_and_taken_only_if_asked(model: str, learned: Tuple[str,
     before = Path(model).read_bytes()
     folder = _kept(model)
     for day in range(3):
-        _log(folder / f'{day}.bag', _robot(_DAY_S * (10 + day), 10 + day, 0.055, 200.0))
-    dead = _log(tmp_path / 'dead.bag', _robot(_DAY_S * 20, 1, 0.055, dead='/battery'))
+        write_log(folder / f'{day}.bag', _robot(_DAY_S * (10 + day), 10 + day, 0.055, 200.0))
+    dead = write_log(tmp_path / 'dead.bag', _robot(_DAY_S * 20, 1, 0.055, dead='/battery'))
     # A rate that is a tenth lower is found at once: it is normal now.
     accepted = [Acceptance(name, at=int(_DAY_S * 9e9)) for name in ('/laser', '/slam')]
     accepted_file.keep(accepted, model)
@@ -167,19 +158,13 @@ def test_no_model_is_lost_when_it_is_taken_again(model: str, tmp_path: Path) -> 
         assert (tmp_path / name).read_bytes() == one
 
 
-def test_what_is_no_model_is_not_taken(model: str, tmp_path: Path, capsys) -> None:
+@pytest.mark.parametrize('is_model, why', [(False, ''), (True, ': it has no limits')])
+def test_what_is_no_model_or_has_no_limits_is_not_taken(
+        is_model: bool, why: str, model: str, model_file: str, capsys) -> None:
     before = Path(model).read_bytes()
-    Path(f'{model}.new').write_text('no model')
+    Path(f'{model}.new').write_bytes(Path(model_file).read_bytes() if is_model else b'no model')
     assert learn_more.main(['--model', model, '--take']) == 1
-    assert 'robot.model.new' in capsys.readouterr().err
-    assert Path(model).read_bytes() == before and not Path(f'{model}.before').exists()
-
-
-def test_what_has_no_limits_is_not_taken(model: str, model_file: str, capsys) -> None:
-    before = Path(model).read_bytes()
-    Path(f'{model}.new').write_bytes(Path(model_file).read_bytes())
-    assert learn_more.main(['--model', model, '--take']) == 1
-    assert 'robot.model.new: it has no limits' in capsys.readouterr().err
+    assert f'robot.model.new{why}' in capsys.readouterr().err
     assert Path(model).read_bytes() == before and not Path(f'{model}.before').exists()
 
 
@@ -194,7 +179,7 @@ def test_bad_input_is_one_line(program, model: str, model_file: str,
         return error
 
     assert f'there is no folder {model}.kept: name event logs' in run(model)
-    log = _log(tmp_path / 'log.bag', _robot(_DAY_S * 10, 1))
+    log = write_log(tmp_path / 'log.bag', _robot(_DAY_S * 10, 1))
     assert 'a part of a recording; name the whole one' in run(model, f'{log}@5-90')
     assert 'the same recording as' in run(model, log, log)
     assert 'has no limits that anything could drift towards' in run(model_file, log)
@@ -204,7 +189,7 @@ def test_bad_input_is_one_line(program, model: str, model_file: str,
 def test_nothing_to_learn_from_is_an_error(model: str, learned: Tuple[str, List[str]],
                                            tmp_path: Path, capsys) -> None:
     # Too short to be judged: whether it is normal is not known.
-    short = _log(tmp_path / 'short.bag', _robot(_DAY_S * 11, 2, length=50.0))
+    short = write_log(tmp_path / 'short.bag', _robot(_DAY_S * 11, 2, length=50.0))
     assert learn_more.main(['--model', model, learned[1][0], short]) == 1
     assert 'no recording is left to learn from' in capsys.readouterr().err
     assert not Path(f'{model}.new').exists()

@@ -36,7 +36,7 @@ def _take_sigint() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # who runs the tests may ignore it
 
 
-# 0: rospy has not ended its threads in time, and so the process is ended (leaving.py).
+# 0: rospy has not ended its threads in time, and so the process is ended (ros_node.py).
 @pytest.mark.parametrize('program, words, codes', [('component', ['player'], (130,)),
                                                    ('learn', [], (0, 130)),
                                                    ('only_one', ['learn', '__name:=x'], (130,))])

@@ -9,8 +9,7 @@ from recorded_logs import write_log
 
 from self_awareness import EncodingRules, read_events
 from self_awareness.learning import logs
-from self_awareness.learning.logs import LogFolder
-from self_awareness.learning.silence import HEARD_S
+from self_awareness.learning.logs import HEARD_S, LogFolder
 
 RULES = EncodingRules.defaults()
 
@@ -44,30 +43,21 @@ def test_time_in_which_nobody_is_heard_does_not_count(tmp_path: Path) -> None:
     assert [log.seconds for log in found.logs] == pytest.approx([660.0], rel=0.01)
 
 
-def test_what_a_crash_left_behind_is_mended(tmp_path: Path) -> None:
-    path = write_log(tmp_path / 'a.bag.active', robot(1000.0, 60.0), 7, crashed=True)
-    found = folder(tmp_path)
-    assert found.look() == [] and found.logs == []
-    assert found.mend() == [f'mended: {tmp_path}/a.bag']
-    assert not Path(path).exists()
-    assert found.look() == []
-    assert found.starts == 1
-    events = read_events(str(tmp_path / 'a.bag'), RULES, recording=0)
-    assert len(events.stamps) == len(list(robot(1000.0, 60.0)))
-
-
-def test_what_cannot_be_mended_is_named_and_the_rest_is_used(tmp_path: Path) -> None:
+def test_what_a_crash_left_behind_is_mended_or_named(tmp_path: Path) -> None:
     (tmp_path / 'a.bag.active').write_bytes(b'')
     (tmp_path / 'b.bag.active').write_bytes(b'no bag at all')
-    write_log(tmp_path / 'c.bag.active', robot(1000.0, 60.0), 7, crashed=True)
+    crashed = write_log(tmp_path / 'c.bag.active', robot(1000.0, 60.0), 7, crashed=True)
     found = folder(tmp_path)
+    assert found.look() == [] and found.logs == []
     lines = found.mend()
     for line, name in zip(lines, 'ab'):
         assert line.startswith(f'left out: {tmp_path}/{name}.bag.active: cannot be mended')
     assert lines[2:] == [f'mended: {tmp_path}/c.bag']
-    assert (tmp_path / 'a.bag.active').exists()
+    assert (tmp_path / 'a.bag.active').exists() and not Path(crashed).exists()
     assert found.look() == []
-    assert len(found.logs) == 1
+    assert len(found.logs) == found.starts == 1
+    events = read_events(str(tmp_path / 'c.bag'), RULES, recording=0)
+    assert len(events.stamps) == len(list(robot(1000.0, 60.0)))
 
 
 def test_what_is_no_good_log_is_named_once_and_left_out(tmp_path: Path) -> None:

@@ -3,39 +3,29 @@ from __future__ import annotations
 
 import math
 import re
-from types import SimpleNamespace
 from typing import Any, Dict, List, Tuple
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from told import of_component, stands, stranger
 
 from self_awareness.live_view import lines
 from self_awareness.live_view.said import SORTS, Said
+from self_awareness.msg import ComponentState, Components, Incident, Incidents, SelfAwareness
 
 
-def status(name: str, level: int = 0, message: str = 'heard', **values: str) -> Any:
-    return SimpleNamespace(name=name, level=level, message=message, values=[
-        SimpleNamespace(key=key, value=value) for key, value in values.items()])
+def status(name: str, level: int = 0, message: str = 'heard', **values: str) -> DiagnosticStatus:
+    return DiagnosticStatus(name=name, level=level, message=message, values=[
+        KeyValue(key, value) for key, value in values.items()])
 
 
-def of_component(name: str, level: int = 0, state: str = 'heard', **values: Any) -> Any:
-    return SimpleNamespace(**{**dict(
-        name=name, level=level, state=state, rate=10.0, usual_rate=12.5, age=0.1, share=0.07,
-        found_after=0.4, found_when_asked=-1.0, not_watched=''), **values})
-
-
-def in_graph(name: str, why: str) -> Any:
+def in_graph(name: str, why: str) -> ComponentState:
     return of_component(name, state='in the graph', rate=0.0, usual_rate=0.0, age=-1.0, share=-1.0,
                         found_after=-1.0, not_watched=why)
 
 
-def components(*of: Any, **lists: Any) -> Any:
-    return SimpleNamespace(**{**dict(
-        model='m', components=list(of), strangers=[], delays_not_watched=[], off_together=[],
-        mutes=[]), **lists})
-
-
-def stranger(component: str, topic: str) -> Any:
-    return SimpleNamespace(component=component, topic=topic, kind='stranger')
+def components(*of: ComponentState, **lists: Any) -> Components:
+    return Components(components=of, **lists)
 
 
 def row(of: Any, width: int = 200) -> Tuple[str, str]:
@@ -49,25 +39,16 @@ def heads(*of: Any, **lists: Any) -> List[Tuple[str, str]]:
     return lines.head(said, 80, False)[1:]
 
 
-def diagnostics(*statuses: Any) -> Any:
-    return SimpleNamespace(status=list(statuses))
+def diagnostics(*statuses: DiagnosticStatus) -> DiagnosticArray:
+    return DiagnosticArray(status=statuses)
 
 
-def verdict(score: float, threshold: float = -1.0, **fields: Any) -> Any:
-    return SimpleNamespace(**{**dict(score=score, threshold=threshold, settling=False, level=0,
-                                     alarm=0, component='', kind='', suspects=[]), **fields})
+def verdict(score: float, threshold: float = -1.0) -> SelfAwareness:
+    return SelfAwareness(score=score, threshold=threshold)
 
 
-def stands(alarm: int, component: str, kind: str, *suspects: Tuple[str, str],
-           level: int = 2) -> Any:
-    return verdict(-2.0, level=level, alarm=alarm, component=component, kind=kind, suspects=[
-        SimpleNamespace(component=name, kind=what) for name, what in suspects])
-
-
-def incident(component: str, alarms: int = 1, over: bool = False, **lists: List[str]) -> Any:
-    return SimpleNamespace(**{**dict(
-        id=7, component=component, kind='silent', alarms=alarms, over=over, unknown=False,
-        together=[], victims=[], others=[]), **lists})
+def incident(component: str, alarms: int = 1, **fields: Any) -> Incident:
+    return Incident(id=7, component=component, kind='silent', alarms=alarms, **fields)
 
 
 @pytest.fixture()
@@ -88,7 +69,7 @@ def said() -> Said:
                      not_watched='too few messages in training: 7 gaps'),
         strangers=[stranger('/rostopic', '/cmd_vel'), stranger('', '/joy')],
         mutes=['/noisy until 2026-11-23 15:00:00 UTC, by /rqt']))
-    of.on_incidents(SimpleNamespace(incidents=[
+    of.on_incidents(Incidents(incidents=[
         incident('/old', over=True), incident('/quiet', alarms=0),
         incident('/player', 7, victims=['/slam', '/navigation', '/speech'])]))
     return of

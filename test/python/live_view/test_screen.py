@@ -2,12 +2,15 @@
 from __future__ import annotations
 
 import time
-from types import SimpleNamespace
-from typing import Any, List, Sequence, Tuple
+from typing import Any, List, Sequence
 
 import pytest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from told import of_component, stands, stranger
 
+from self_awareness.commands import top
 from self_awareness.live_view.said import Said
+from self_awareness.msg import Components
 
 screen = pytest.importorskip('self_awareness.live_view.screen', reason='needs urwid')
 
@@ -40,36 +43,17 @@ class Shown:
         self.called.append(what)
         return 'done'
 
-    def stands(self, kind: str, suspect: str) -> None:
-        self.said.on_status(SimpleNamespace(
-            score=-2.0, threshold=-1.0, settling=False, level=1, alarm=7, component='/player',
-            kind=kind, suspects=[SimpleNamespace(component='/player', kind=kind),
-                                 SimpleNamespace(component='/slam', kind=suspect)]))
-
     def tell(self, *names: str, strangers: Sequence[Any] = ()) -> None:
-        self.said.on_components(SimpleNamespace(
-            components=[SimpleNamespace(
-                name=name, level=0, state='heard', rate=1.0, usual_rate=1.0, age=0.1, share=0.1,
-                found_after=1.0, found_when_asked=-1.0, not_watched='') for name in names],
-            strangers=strangers, delays_not_watched=[], off_together=[], mutes=[]))
+        self.said.on_components(Components(
+            components=[of_component(name) for name in names], strangers=strangers))
         self._screen._on_time()
 
-    def told_new(self, number: int) -> List[Any]:
-        new = [SimpleNamespace(component=f'/n{k}', topic=f'/t{k}', kind='stranger')
-               for k in range(number)]
-        self.tell(strangers=new)
-        return new
-
-    def drawn(self) -> List[List[Tuple[Any, str]]]:
-        """Return the lines on the screen, as styles and texts."""
-        canvas = self._screen._frame.render((80, 24), focus=True)
-        return [[(style, text.decode()) for style, _, text in line] for line in canvas.content()]
-
     def selected(self) -> List[str]:
-        """Return the lines that are highlighted."""
+        """Return the first words of the lines that are highlighted."""
         styles = {name for name, color, *_ in screen._PALETTE_SELECTED if 'standout' in color}
-        return [''.join(text for _, text in line) for line in self.drawn()
-                if all(style in styles for style, _ in line)]
+        drawn = self._screen._frame.render((80, 24), focus=True).content()
+        return [line[0][2].decode().split()[0] for line in drawn
+                if all(style in styles for style, _, _ in line)]
 
 
 @pytest.fixture()
@@ -77,9 +61,11 @@ def shown() -> Shown:
     return Shown()
 
 
-def test_a_death_is_accepted_after_yes_only(shown: Shown) -> None:
-    shown.stands('slow', 'silent')
-    assert shown.press('a') == 'accept it? /slam may then die unseen (y/n)'
+@pytest.mark.parametrize('kind, who', [
+    ('silent', '/slam'), ('late', 'who has died since it was raised')])
+def test_what_stands_is_accepted_after_yes_only(shown: Shown, kind: str, who: str) -> None:
+    shown.said.on_status(stands(7, '/player', 'slow', ('/slam', kind)))
+    assert shown.press('a') == f'accept it? {who} may then die unseen (y/n)'
     assert shown.press('n') == 'not done' and shown.called == []
     shown.press('y')
     assert shown.called == [], 'there is no question any more'
@@ -87,16 +73,9 @@ def test_a_death_is_accepted_after_yes_only(shown: Shown) -> None:
     assert shown.called == [(7, [])]
 
 
-def test_what_names_no_death_now_may_have_been_raised_by_one(shown: Shown) -> None:
-    shown.stands('slow', 'late')
-    assert shown.press('a') == (
-        'accept it? who has died since it was raised may then die unseen (y/n)')
-    assert shown.press('y') == 'done' and shown.called == [(7, [])]
-
-
 @pytest.mark.parametrize('paused', [True, False])
 def test_a_pause_keeps_what_is_shown(shown: Shown, paused: bool) -> None:
-    shown.stands('slow', 'late')
+    shown.said.on_status(stands(7, '/player', 'slow', ('/slam', 'late')))
     shown._screen._on_time()
     shown.press(*(['p'] if paused else []))
     shown.said = Said('/watch')  # it is over meanwhile
@@ -106,26 +85,27 @@ def test_a_pause_keeps_what_is_shown(shown: Shown, paused: bool) -> None:
 
 
 def test_what_comes_after_the_question_is_not_accepted(shown: Shown) -> None:
-    first = shown.told_new(9)
+    new = [stranger(f'/n{number}', '/t') for number in range(9)]
+    shown.tell(strangers=new)
     assert shown.press('a') == 'accept 9 that are new? (y/n)'
-    shown.told_new(1)
+    shown.tell(strangers=new[:1])
     assert shown.press('y') == 'done'
-    assert shown.called == [(0, first)], 'in one call'
+    assert shown.called == [(0, new)], 'in one call'
 
 
 def test_a_warning_of_which_nothing_stands_is_not_accepted(shown: Shown) -> None:
-    shown.said.on_diagnostics(SimpleNamespace(status=[SimpleNamespace(
-        name='watch: communication', level=1, message='is the model of this robot?', values=[])]))
+    shown.said.on_diagnostics(DiagnosticArray(status=[DiagnosticStatus(
+        1, 'watch: communication', 'is the model of this robot?', '', [])]))
     assert shown.press('a') == 'nothing stands, and nobody is new' and shown.called == []
 
 
 def test_the_selected_component_is_highlighted_and_stays_so(shown: Shown) -> None:
     shown.tell('/a', '/c')
-    assert [line.split()[0] for line in shown.selected()] == ['/a']
+    assert shown.selected() == ['/a']
     shown._screen._frame.keypress((80, 24), 'down')
-    assert [line.split()[0] for line in shown.selected()] == ['/c']
+    assert shown.selected() == ['/c']
     shown.tell('/a', '/b', '/c')
-    assert [line.split()[0] for line in shown.selected()] == ['/c']
+    assert shown.selected() == ['/c']
 
 
 def test_who_is_selected_is_muted_after_yes_only_and_told_again(shown: Shown) -> None:
@@ -140,6 +120,11 @@ def test_who_is_selected_is_muted_after_yes_only_and_told_again(shown: Shown) ->
     assert shown.press('y') == 'done', 'the one that was asked for'
     assert shown.press('u') == 'done'
     assert shown.called == [('/player', 600.0), ('/player', 0.0)]
+
+
+def test_without_a_terminal_it_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    assert top.main([]) == 1
+    assert 'needs a terminal' in capsys.readouterr().err
 
 
 def test_all_keys_are_in_one_line(shown: Shown) -> None:

@@ -1,4 +1,4 @@
-"""Calls to nodes and the master, with made-up ones on the loopback interface."""
+"""Calls to nodes, the master and roslaunch, with made-up ones on the loopback interface."""
 from __future__ import annotations
 
 import gzip
@@ -6,12 +6,12 @@ import socket
 import threading
 import time
 from contextlib import ExitStack, contextmanager
-from typing import Any, Callable, Iterator
+from typing import Any, Callable, Dict, Iterator, Sequence
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 
-from self_awareness.recovery.node_calls import ANSWER_S, MOST_OF_NODE, NodeCalls
+from self_awareness.recovery.node_calls import ANSWER_S, MOST_OF_NODE, Launchers, NodeCalls
 from self_awareness.recovery.xml_rpc import NoAnswer
 
 CALLS = NodeCalls('/test')
@@ -106,33 +106,22 @@ def saying(*parts: bytes, pause: float = 0.0) -> Iterator[str]:
 
 
 _HEAD = b'HTTP/1.0 200 OK\r\nContent-Type: text/xml\r\n'
+_DROPS = [b' '] * 600  # all of them take a minute
+_WITHOUT_END = [b' ' * MOST_OF_NODE] * 100
 
 
-@pytest.mark.parametrize('head', [_HEAD, _HEAD + b'\r\n'])
-def test_who_answers_drop_by_drop_is_not_waited_for(head: bytes) -> None:
+@pytest.mark.parametrize('head, parts, pause', [
+    (_HEAD, _DROPS, 0.1), (_HEAD + b'\r\n', _DROPS, 0.1),
+    (_HEAD + b'X: ', _WITHOUT_END, 0.0), (_HEAD + b'\r\n', _WITHOUT_END, 0.0),
+    (_HEAD + b'Content-Length: 999999999\r\n\r\n', _WITHOUT_END, 0.0),
+    (_HEAD + b'Content-Encoding: gzip\r\n\r\n', [gzip.compress(b' ' * 10_000_000)], 0.0)])
+def test_an_answer_may_be_neither_slow_nor_long_nor_compressed(
+        head: bytes, parts: Sequence[bytes], pause: float) -> None:
     began = time.monotonic()
-    with pytest.raises(NoAnswer, match='/player does not answer'):
-        with saying(head, *([b' '] * 600), pause=0.1) as address:
-            try:
-                CALLS.process_id('/player', address)
-            finally:
-                took = time.monotonic() - began
-    assert took < 20.0 * ANSWER_S, 'all of it takes a minute'
-
-
-@pytest.mark.parametrize('head', [_HEAD + b'X: ', _HEAD + b'\r\n',
-                                  _HEAD + b'Content-Length: 999999999\r\n\r\n'])
-def test_an_answer_without_an_end_is_not_read(head: bytes) -> None:
-    with saying(head, *([b' ' * MOST_OF_NODE] * 100)) as address:
+    with saying(head, *parts, pause=pause) as address:
         with pytest.raises(NoAnswer, match='/player does not answer'):
             CALLS.process_id('/player', address)
-
-
-def test_what_is_compressed_is_no_answer() -> None:
-    packed = gzip.compress(b' ' * 10_000_000)
-    with saying(_HEAD + b'Content-Encoding: gzip\r\n\r\n' + packed) as address:
-        with pytest.raises(NoAnswer, match='/player does not answer'):
-            CALLS.process_id('/player', address)
+    assert time.monotonic() - began < 20.0 * ANSWER_S
 
 
 @pytest.mark.parametrize('address', ['http://robot..lan:1/', 'http://[1/', 'no address', ''])
@@ -170,3 +159,57 @@ def test_the_master_tells_who_listens_to_whom_and_who_is_of_this_package(
     assert CALLS.robot() == ({'/player', '/watch', '/base', '/slam', '/rosout'}, {'/watch'})
     with pytest.raises(NoAnswer, match='the master says: unknown node /gone'):
         CALLS.address('/gone')
+
+
+@contextmanager
+def roslaunch(children: Sequence[str] = (), **changed: Any) -> Iterator[str]:
+    """Hand out the address of one that has started /robot/player-one as process 42."""
+    info: Dict[str, Any] = {'pid': 42, 'respawn': True, 'required': False, **changed}
+    with serving(list_processes=lambda: (1, '', [[['robot/player-one-3', 1], ['rosout-1', 1]],
+                                                 [['dead-2', 1]]]),
+                 process_info=lambda name: (1, '', info) if name == 'robot/player-one-3'
+                 else (-1, 'no process by that name', {}),
+                 list_children=lambda: (1, '', list(children))) as address:
+        yield address
+
+
+NODE = '/robot/player-one'
+GONE = 'http://127.0.0.1:1/'
+
+
+def test_who_is_respawned_may_be_stopped() -> None:
+    with roslaunch() as address:
+        assert Launchers([address]).why_not(NODE, {41, 42}) == ''
+        assert Launchers([GONE, address]).why_not(NODE, None) == ''
+
+
+@pytest.mark.parametrize('changed, why', [
+    ({'respawn': False}, 'not respawn="true"'), ({'required': True}, 'required="true"'),
+    ({'respawn': 'yes'}, 'not respawn="true"'), ({'required': 0}, 'required="true"'),
+    ({'pid': 43}, 'started by no roslaunch')])
+def test_others_may_not(changed: Any, why: str) -> None:
+    with roslaunch(**changed) as address:
+        assert why in Launchers([address]).why_not(NODE, {41, 42})
+
+
+def test_who_no_roslaunch_knows_may_not_be_stopped() -> None:
+    with roslaunch() as address:
+        assert 'started by no roslaunch' in Launchers([address]).why_not('/player', {42})
+        assert 'started by no roslaunch' in Launchers([address]).why_not('/dead', {42})
+    assert f'({GONE} does not answer)' in Launchers([GONE]).why_not(NODE, {42})
+
+
+def test_nodes_on_other_machines_are_those_of_another_roslaunch() -> None:
+    with roslaunch(respawn=False) as child, roslaunch([child, GONE], pid=43) as parent:
+        assert 'not respawn' in Launchers([parent]).why_not(NODE, {42})
+        assert 'not respawn' in Launchers([parent]).why_not(NODE, None), 'it may be either'
+
+
+def test_the_master_knows_where_they_are(master: Callable[..., None]) -> None:
+    with roslaunch() as address:
+        for uris, found in (({'host__1': address}, True), ({}, False)):
+            master(getParam=lambda name, key: (1, '', uris))
+            assert (CALLS.launchers().why_not(NODE, {42}) == '') == found
+    master(getParam=lambda name, key: (-1, 'not set', 0))
+    with pytest.raises(NoAnswer, match='not set'):
+        CALLS.launchers()

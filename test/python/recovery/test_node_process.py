@@ -12,21 +12,16 @@ from self_awareness.recovery.node_process import NodeProcess, NotItsProcess, pro
 OURSELVES = -2
 
 
-def test_a_node_is_found_and_ends_when_it_is_told_to(tmp_path: Path) -> None:
+def test_a_node_ends_when_it_is_told_to_and_nobody_else_does(tmp_path: Path) -> None:
     with launched(tmp_path, '__name:=player') as pid:
         process = process_of('/robot/player', pid)
+        with_the_same_id = NodeProcess(pid, process.start - 1)
+        assert not with_the_same_id.runs()
+        assert with_the_same_id.end(0.3) == 'ended by SIGTERM', 'it has ended long ago'
+        assert not process.ends_within(0.3, lambda: None), 'it gets no signal'
         assert process.pid == pid and process.runs()
         assert process.end(20.0) == 'ended by SIGTERM'
         assert not process.runs()
-
-
-def test_another_process_with_the_same_id_is_left_alone(tmp_path: Path) -> None:
-    with launched(tmp_path, '__name:=player') as pid:
-        now = process_of('/player', pid)
-        before = NodeProcess(pid, now.start - 1)
-        assert not before.runs()
-        assert before.end(0.3) == 'ended by SIGTERM', 'it has ended long ago'
-        assert not now.ends_within(0.3, lambda: None), 'it gets no signal'
 
 
 @pytest.mark.parametrize('name', ['/player2', '/robot/play', '/slam'])

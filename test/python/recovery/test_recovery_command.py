@@ -16,7 +16,7 @@ RULES = Path(__file__).resolve().parents[3] / 'config' / 'recovery.yaml'
 def without_ros(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rospy, 'init_node', lambda name: None)
     monkeypatch.setattr(rospy, 'get_name', lambda: '/recovery')
-    monkeypatch.setattr(recovery, 'limit_goodbye', lambda: None)
+    monkeypatch.setattr(recovery.ros_node, 'limit_goodbye', lambda: None)
     monkeypatch.setattr(recovery, 'Recovery', MagicMock())
 
 

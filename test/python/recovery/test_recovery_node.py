@@ -19,6 +19,7 @@ from self_awareness.recovery.rules import Rule, Rules, Stop
 RULE = Rule('/player', ('silent',), (Stop(('/player',)),))
 FAULT = Fault(7, '/player', 'silent', True)
 SECOND = 10 ** 9
+UNEXPECTED = UnicodeError('label empty or too long')
 
 
 @pytest.fixture(name='recovery')
@@ -47,21 +48,23 @@ def action(**fields: Any) -> Action:
     return Action(7, '/player', 'silent', 1, 1, 'stop /player', time.time_ns(), False, **fields)
 
 
+def read(recovery: Recovery) -> None:
+    recovery._find_path()
+    recovery._advance(0.0)
+
+
 def test_where_the_actions_are_kept_is_known_when_the_monitor_is_there(
         recovery: Recovery, path: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     directories: List[Any] = [None]
     monkeypatch.setattr(recovery._calls, 'parameter', lambda name: directories[0])
     History([action(over=True)]).save(path)
-    recovery._find_path()
-    recovery._advance(0.0)
+    read(recovery)
     assert recovery._history.actions == [], 'it may be set when the monitor is started'
     directories[0] = str(tmp_path)
-    recovery._find_path()
-    recovery._advance(0.1)
+    read(recovery)
     assert len(recovery._history.actions) == 1
     directories[0] = '/other'
-    recovery._find_path()
-    recovery._advance(0.2)
+    read(recovery)
     assert recovery._path == path
 
 
@@ -79,8 +82,7 @@ def test_a_monitor_without_the_parameter_has_the_usual_place(
 def test_a_step_of_another_start_is_over(recovery: Recovery, path: str) -> None:
     done = action(over=True, success=True, result='done')
     History([done, action()]).save(path)
-    recovery._find_path()
-    recovery._advance(0.0)
+    read(recovery)
     assert recovery._history.actions[0] == done
     assert recovery._history.actions[1].result == 'the recovery ended meanwhile'
     assert history.load(path).actions == recovery._history.actions
@@ -90,16 +92,14 @@ def test_a_hold_counts_before_it_is_known_where_it_is_kept(recovery: Recovery, p
     History([], Hold(time.time_ns() + 600 * SECOND)).save(path)
     assert hold(recovery, 0.0) == 'goes on'
     recovery._advance(0.0)
-    recovery._find_path()
-    recovery._advance(0.1)
+    read(recovery)
     assert recovery._why_held() == ''
     assert history.load(path).hold.until <= time.time_ns()
 
 
 def test_a_hold_that_is_not_kept_yet_says_so(recovery: Recovery) -> None:
     assert 'not kept yet' in hold(recovery, 60.0)
-    recovery._find_path()
-    recovery._advance(0.0)
+    read(recovery)
     assert 'not kept' not in hold(recovery, 60.0)
 
 
@@ -112,8 +112,7 @@ def test_who_holds_it_is_shown_in_short(recovery: Recovery) -> None:
 def test_a_hold_outlives_steps_of_the_clock(recovery: Recovery, path: str) -> None:
     now = time.monotonic_ns()
     History([], Hold(1, now + 600 * SECOND)).save(path)
-    recovery._find_path()
-    recovery._advance(0.0)
+    read(recovery)
     assert recovery._why_held() == 'it is held'
 
 
@@ -126,26 +125,17 @@ def test_a_hold_says_what_is_still_being_done(recovery: Recovery) -> None:
     assert recovery._why_held() == ''
 
 
-def done(recovery: Recovery, dry_run: bool, do: Any, would_do: Any) -> Any:
-    """Let a step be done; return whether it was, and what came of it."""
+@pytest.mark.parametrize('dry_run, does, success, told', [
+    (True, 'would_do', True, 'nothing, since this is a dry run: ended'),
+    (False, 'do', True, 'ended'),
+    (True, 'would_do', False, f'it failed unexpectedly: {UNEXPECTED!r}'),
+    (False, 'do', False, f'it failed unexpectedly: {UNEXPECTED!r}')])
+def test_in_a_dry_run_nothing_is_done_and_what_fails_unexpectedly_has_failed(
+        recovery: Recovery, dry_run: bool, does: str, success: bool, told: str) -> None:
     recovery._rules = Rules((RULE,), dry_run=dry_run)
-    recovery._actions = MagicMock(do=MagicMock(side_effect=do),
-                                  would_do=MagicMock(side_effect=would_do))
+    recovery._actions = MagicMock(**{f'{does}.side_effect': ['ended' if success else UNEXPECTED]})
     recovery._do(Order(RULE, 1, RULE.steps[0], FAULT))
-    return recovery._done
-
-
-@pytest.mark.parametrize('dry_run, result', [
-    (True, 'nothing, since this is a dry run: would end'), (False, 'ended')])
-def test_in_a_dry_run_nothing_is_done(recovery: Recovery, dry_run: bool, result: str) -> None:
-    assert done(recovery, dry_run, ['ended'], ['would end']) == (True, result)
-
-
-@pytest.mark.parametrize('dry_run', [True, False])
-def test_a_step_that_fails_unexpectedly_has_failed(recovery: Recovery, dry_run: bool) -> None:
-    failure = UnicodeError('label empty or too long')
-    success, result = done(recovery, dry_run, failure, failure)
-    assert not success and 'label empty or too long' in result
+    assert recovery._done == (success, told)
 
 
 def test_a_look_that_fails_unexpectedly_is_followed_by_another(
@@ -154,7 +144,7 @@ def test_a_look_that_fails_unexpectedly_is_followed_by_another(
 
     def fail() -> None:
         looks.append(1)
-        raise UnicodeError('label empty or too long')
+        raise UNEXPECTED
 
     monkeypatch.setattr('self_awareness.recovery.node._LOOK_EVERY_S', 0.0)
     monkeypatch.setattr(recovery._actions, 'look', fail)

@@ -18,42 +18,31 @@ DOING = Action(7, '/player', 'silent', 2, 2, 'stop /player, /slam', 1_600_000_02
                False)
 
 
-def test_nothing_to_do_is_ok() -> None:
-    assert words.status(NOW, 3, [], [DONE], '', '') == (
-        words.OK, 'watches 3 components; 1 actions so far')
-
-
-def test_what_is_done_and_what_will_be_is_told() -> None:
-    waiting = Climb(RULE, NOW + 12.4, 1)
-    assert words.status(NOW, 1, [waiting], [DONE], '', '') == (
-        words.WARN, '/player is to be mended by step 2 of 2 in 12 s, if it does not recover')
-    assert words.status(NOW, 1, [Climb(RULE, NOW, 1)], [DONE], '', '')[1] == (
-        '/player is to be mended by step 2 of 2 as soon as it fails so again')
-    assert words.status(NOW, 1, [waiting], [DONE, DOING], '', '') == (
-        words.WARN, 'stop /player, /slam (step 2 of 2), since /player: silent')
-
-
-def test_who_gave_up_says_so_until_it_is_healed() -> None:
-    gave_up = [Climb(RULE, NOW, 3, gave_up='3 actions')]
-    assert words.status(NOW, 1, gave_up, [DONE], '', '') == (
-        words.ERROR, 'gave up on /player: 3 actions')
-    assert words.status(NOW, 1, gave_up, [], 'not heard', '')[1] == (
-        'gave up on /player: 3 actions; does nothing: not heard')
-
-
+WAITING, GAVE_UP = Climb(RULE, NOW + 12.4, 1), Climb(RULE, NOW, 3, gave_up='3 actions')
 DOES = 'stop /player, /slam (step 2 of 2), since /player: silent'
 
 
-@pytest.mark.parametrize('actions, blind, held, told', [
-    ([], 'the monitor is not heard', '', 'does nothing: the monitor is not heard'),
-    ([], '', 'until noon, by /me', 'does nothing until noon, by /me'),
-    ([DONE, DOING], '', 'until noon, by /me', f'{DOES}; does nothing more until noon, by /me'),
-    ([DONE, DOING], 'not heard', 'until noon',
+@pytest.mark.parametrize('climbs, actions, blind, held, level, told', [
+    ([], [DONE], '', '', words.OK, 'watches 3 components; 1 actions so far'),
+    ([WAITING], [DONE], '', '', words.WARN,
+     '/player is to be mended by step 2 of 2 in 12 s, if it does not recover'),
+    ([Climb(RULE, NOW, 1)], [DONE], '', '', words.WARN,
+     '/player is to be mended by step 2 of 2 as soon as it fails so again'),
+    ([WAITING], [DONE, DOING], '', '', words.WARN, DOES),
+    ([GAVE_UP], [DONE], '', '', words.ERROR, 'gave up on /player: 3 actions'),
+    ([GAVE_UP], [], 'not heard', '', words.ERROR,
+     'gave up on /player: 3 actions; does nothing: not heard'),
+    ([], [], 'not heard', '', words.WARN, 'does nothing: not heard'),
+    ([], [], '', 'until noon, by /me', words.WARN, 'does nothing until noon, by /me'),
+    ([], [DONE, DOING], '', 'until noon', words.WARN, f'{DOES}; does nothing more until noon'),
+    ([], [DONE, DOING], 'not heard', 'until noon', words.WARN,
      f'{DOES}; does nothing more until noon; does nothing: not heard'),
-    ([], 'not heard', 'until noon', 'does nothing until noon; does nothing: not heard')])
-def test_why_nothing_is_done_is_told(actions: List[Action], blind: str, held: str,
-                                     told: str) -> None:
-    assert words.status(NOW, 1, [], actions, blind, held) == (words.WARN, told)
+    ([], [], 'not heard', 'until noon', words.WARN,
+     'does nothing until noon; does nothing: not heard')])
+def test_what_is_and_will_be_done_is_told_or_why_nothing_is(
+        climbs: List[Climb], actions: List[Action], blind: str, held: str, level: int,
+        told: str) -> None:
+    assert words.status(NOW, 3, climbs, actions, blind, held) == (level, told)
 
 
 def test_the_last_actions_are_values() -> None:

@@ -52,8 +52,10 @@ def faults(tested: Watch, now: float, listeners: Optional[Listeners] = None) -> 
             if each.stands]
 
 
-def test_the_alarm_that_stands_is_a_fault() -> None:
-    assert watch().faults(0.0) == [died('/player')]
+@pytest.mark.parametrize('blamed', ['/player', '/slam'])
+def test_the_alarm_that_stands_is_a_fault(blamed: str) -> None:
+    """Of the one that it blames; the incident may blame another one."""
+    assert watch(said=status(blamed, component=blamed)).faults(0.0) == [died(blamed)]
 
 
 @pytest.mark.parametrize('said', [
@@ -73,11 +75,6 @@ def test_the_alarm_says_what_is_wrong_now(then: str, now: str) -> None:
     assert faults(watch(said=said), 0.0) == [f'/player {now}']
     both = status(suspect('/player', now), suspect('/player', then), kind=then)
     assert faults(watch(said=both), 0.0) == [f'/player {then}']
-
-
-def test_who_is_to_blame_is_told_by_the_alarm() -> None:
-    said = status('/slam', component='/slam')
-    assert watch(said=said).faults(0.0) == [died('/slam')]
 
 
 def test_an_alarm_whose_incident_is_not_known_yet_has_its_own_id() -> None:
