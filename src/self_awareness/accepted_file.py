@@ -6,14 +6,13 @@ from typing import List, Sequence, Tuple
 
 from self_awareness import Acceptance, TrainedModel, read_accepted, write_accepted
 
-_BESIDE = '.accepted'
 _MOST = 1000
 _NOT_SUBSCRIBED = 'not subscribed'
 
 
 def path_of(model: str) -> str:
     """Return the path of the file that belongs to a model."""
-    return model + _BESIDE
+    return f'{model}.accepted'
 
 
 def beside(model: str) -> List[Acceptance]:

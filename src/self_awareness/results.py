@@ -61,9 +61,8 @@ def result_bag(path: Optional[str], model_path: str, trained: TrainedModel,
         bag = ResultBag(temporary, path)
 
         def replay(recording: RecordingEvents) -> ReplayedMonitor:
-            start, _ = recording.part.span(recording.origin, recording.end)
             return ReplayedMonitor(bag, model_path, trained, calibrated, recording.event_types,
-                                   start, list(coverage))
+                                   recording.recording.start, list(coverage))
 
         yield replay
         bag.close()

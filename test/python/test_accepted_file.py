@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Tuple
 
 import pytest
 
@@ -25,17 +25,19 @@ def entries() -> List[Acceptance]:
             Acceptance(topic='/replayed', at=100)]
 
 
-def test_what_was_heard_after_it_was_accepted_is_learned(entries: List[Acceptance]) -> None:
-    learned, left = accepted_file.learned(entries, model(100, 100))
-    assert learned == [entries[0], entries[4]]
-    assert left == entries[1:4], 'too late, not heard, and a pattern'
-    assert accepted_file.learned(entries, model(0, 0))[0] == []
+@pytest.mark.parametrize('heard, places', [
+    ((100, 100), [0, 4]), ((0, 0), []), ((50, 50, 1000), []), ((50, 100, 1000), [4])])
+def test_what_was_heard_after_it_was_accepted_is_learned(
+        entries: List[Acceptance], heard: Tuple[int, ...], places: List[int]) -> None:
+    """The others: too late, not heard, and a pattern. That another one was heard teaches nothing.
+    """
+    learned = [entries[place] for place in places]
+    assert accepted_file.learned(entries, model(*heard)) == (
+        learned, [each for each in entries if each not in learned])
+
+
+def test_what_was_never_heard_is_not_learned() -> None:
     assert accepted_file.learned([Acceptance('/driver', at=0)], model(0, 0))[0] == []
-
-
-def test_that_another_one_was_heard_later_teaches_nothing(entries: List[Acceptance]) -> None:
-    assert accepted_file.learned(entries, model(50, 50, 1000))[0] == []
-    assert accepted_file.learned(entries, model(50, 100, 1000))[0] == [entries[4]]
 
 
 def test_who_does_not_subscribe_is_learned_once_it_is_not_expected() -> None:

@@ -18,7 +18,7 @@ from self_awareness.reporting import (age_text, delay_bins, model_text, rates_te
 from self_awareness.reporting.file_summary import (describe_version, summarise_event_log,
                                                    summarise_results)
 from self_awareness.reporting.model_summary import summarise, tuning_lines
-from self_awareness.reporting.text import duration, number_of, rounded
+from self_awareness.reporting.text import duration, number_of, or_dash
 from self_awareness.stamps import moment, span
 
 
@@ -53,7 +53,9 @@ def _info(arguments: argparse.Namespace) -> None:
     elif arguments.json:
         cli.print_values(summarise(model))
     else:
-        _print(model, arguments.model, arguments.details)
+        details = model_text.lines(summarise(model)) if arguments.details else []
+        cli.print_lines([*verdict.lines(model), *details,
+                         *verdict.next_steps(model, arguments.model)])
 
 
 def _info_of_age(arguments: argparse.Namespace) -> None:
@@ -134,13 +136,6 @@ def _info_of_results(arguments: argparse.Namespace) -> None:
     print(f'results      {span(summary["start_ns"], summary["end_ns"])}')
 
 
-def _print(model: TrainedModel, path: str, details: bool) -> None:
-    cli.print_lines(verdict.lines(model))
-    if details:
-        cli.print_lines(model_text.lines(summarise(model)))
-    cli.print_lines(verdict.next_steps(model, path))
-
-
 def _print_log(summary: Dict[str, Any], details: bool) -> None:
     nodes = {kind['source'] for kind in summary['event_types']} - {''}
     recordings = summary['recordings']
@@ -167,9 +162,8 @@ def _print_log(summary: Dict[str, Any], details: bool) -> None:
     print(f'event types  {len(summary["event_types"])}')
     print('     count  rate [Hz]')
     for kind in summary['event_types']:
-        rate = '-' if kind['rate'] is None else rounded(kind['rate'], 3)
-        print(f'  {kind["count"]:8d} {rate:>10}  {kind["source"] or "-"} {kind["scope"]} '
-              f'{kind["type"]}')
+        print(f'  {kind["count"]:8d} {or_dash(kind["rate"]):>10}  {kind["source"] or "-"} '
+              f'{kind["scope"]} {kind["type"]}')
     print(f'graph        {model_text.graph(summary)}')
 
 

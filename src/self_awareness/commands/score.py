@@ -27,7 +27,7 @@ from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import check_installed, save_report
 from self_awareness.reporting.report.section import section
 from self_awareness.reporting.report.timeline import timeline
-from self_awareness.reporting.text import cell, duration, first_lines, number_of
+from self_awareness.reporting.text import cell, duration, first_lines, number_of, seconds_of
 from self_awareness.results import check_apart, result_bag
 from self_awareness.stamps import SECOND_NS, span
 
@@ -140,8 +140,7 @@ def _print(judged: Judged, details: bool) -> List[Incident]:
     """Print what happened in a recording, a block for each incident; return the incidents."""
     recording = judged.recording
     found = incidents(judged, intervals(judged), 'incident')
-    start, end = recording.part.span(recording.origin, recording.end)
-    print(f'{recording.part}: {duration((end - start) / SECOND_NS)}, '
+    print(f'{recording.part}: {duration(seconds_of([recording.recording]))}, '
           + ('not judged' if judged.by.threshold is None else _counted(found)))
     if recording.steps_of_the_clock:
         print(f'  the clock was set {in_words(recording.steps_of_the_clock)}: the recording is '
@@ -174,12 +173,12 @@ def _lines(judged: Judged, incident: Incident, details: bool) -> Iterator[str]:
     yield (f'    {level}{main.start:.1f} - {main.end:.1f} s{notes and f" ({notes})"}, '
            f'{span(main.of.begin, main.of.end)}'
            + (f': {main.reached}, {main.evidence}' if details else ''))
-    if main.busy is not None and main.of.kind != 'busy machine':
-        yield f'    {main.busy}'
-    named = [f'    {rank}. {suspect.event_type}: {suspect.why}'
+    if main.of.busy is not None and main.of.kind != 'busy machine':
+        yield f'    {main.of.busy}'
+    named = [f'    {rank}. {suspect.event_type}: {suspect.of.reason.words}'
              for rank, suspect in enumerate(main.suspects, 1)]
-    later = [f'    since {suspect.named:.1f} s {suspect.event_type}: {suspect.why}'
-             for suspect in main.later]
+    later = [f'    since {suspect.named:.1f} s {suspect.event_type}: '
+             f'{suspect.of.reason.words}' for suspect in main.later]
     for lines in (named, later):
         yield from lines if details else first_lines(lines, _MOST_NAMED, indent='    ')
 
@@ -206,10 +205,7 @@ def _print_details(judged: Judged) -> None:
 
 def _print_sum(judged: Sequence[Judged], found: Sequence[Incident]) -> None:
     """Print how many incidents all recordings show."""
-    seconds = 0.0
-    for each in judged:
-        start, end = each.recording.part.span(each.recording.origin, each.recording.end)
-        seconds += (end - start) / SECOND_NS
+    seconds = seconds_of(each.recording.recording for each in judged)
     print(f'{number_of(len(judged), "recording")}, {duration(seconds)}: {_counted(found)}')
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 from typing import Any, Dict, List
 
 from self_awareness.learning.age import Age
-from self_awareness.reporting.text import aligned, duration, first_lines, number_of, percent
+from self_awareness.reporting.text import (aligned, duration, first_lines, number_of, percent,
+                                           seconds_of)
 from self_awareness.stamps import SECOND_NS, to_the_second
 
 _DAY_S = 86_400.0
@@ -17,7 +18,7 @@ def summarise(age: Age) -> Dict[str, Any]:
         'learned_until_ns': age.learned_until,
         'heard_until_ns': _heard_until(age),
         'samples': age.samples,
-        'hours': _hours(age),
+        'hours': _heard_s(age) / 3600.0,
         'recordings': len(age.counted),
         'left_out': [{'recording': str(each.part), 'reason': each.left_out, 'why': each.why}
                      for each in age.heard if each.left_out],
@@ -58,7 +59,7 @@ def _verdict(age: Age) -> str:
     if until is None:
         return 'nothing was heard since that could tell a drift'
     days = round(max(0.0, (until - age.learned_until) / SECOND_NS / _DAY_S))
-    return (f'heard since for {duration(3600.0 * _hours(age))} in '
+    return (f'heard since for {duration(_heard_s(age))} in '
             f'{number_of(age.samples, "start")} of the robot or days of one, the last '
             f'{number_of(days, "day")} later: '
             + (f'drifting: {", ".join(age.drifting)}' if age.drifting else 'nothing drifts'))
@@ -68,6 +69,5 @@ def _heard_until(age: Age) -> Any:
     return max((each.recording.end for each in age.counted), default=None)
 
 
-def _hours(age: Age) -> float:
-    return sum(each.recording.end - each.recording.start
-               for each in age.counted) / SECOND_NS / 3600.0
+def _heard_s(age: Age) -> float:
+    return seconds_of(each.recording for each in age.counted)

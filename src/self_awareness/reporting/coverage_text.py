@@ -62,17 +62,11 @@ def table(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[Tuple[str, 
 
 
 def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
-    """Return the lines of a table, a component in each, and who and what is not watched.
-
-    Args:
-        found: what summarise() returned.
-        fewest_gaps: that an event type needs to be judged.
-    """
+    """Return the lines of table(), and who and what is not watched."""
     if not found:
         return []
-    missing = not_watched(found)
-    return (aligned(table(found, fewest_gaps)) + ([missing] if missing else [])
-            + not_judged(found))
+    return [*aligned(table(found, fewest_gaps)), *filter(None, [not_watched(found)]),
+            *not_judged(found)]
 
 
 def unheard(publications: Iterable[Tuple[str, str]]) -> List[str]:

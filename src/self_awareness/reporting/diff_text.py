@@ -7,7 +7,7 @@ from typing import Any, Dict, List
 from self_awareness.comparison.changes import (DELAY, ENDED, GAP, GONE, NEW, RATE, Change,
                                                Comparison)
 from self_awareness.comparison.sides import Kind, Side
-from self_awareness.reporting.text import first_of, rounded
+from self_awareness.reporting.text import first_of, number_of, rounded
 
 _MOST_UNSURE = 10
 
@@ -20,12 +20,13 @@ def name(kind: Kind) -> str:
 def numbers(change: Change) -> str:
     """Return what it was and what it is."""
     before, after = change.before, change.after
+    whole = ', as all of its source' if change.whole else ''
     if change.end is not None:
-        return (f'last heard at {change.end.last:.1f} s, {change.end.silent:.1f} s before the end'
-                + (', as all of its source' if change.whole else ''))
+        return (f'last heard at {change.end.last:.1f} s, {change.end.silent:.1f} s before the '
+                f'end{whole}')
     if before is None or after is None:
         rate, = (each for each in (before, after) if each is not None)
-        return f'{rounded(rate, 3)} Hz' + (', as all of its source' if change.whole else '')
+        return f'{rounded(rate, 3)} Hz{whole}'
     if change.what == RATE:
         return (f'{rounded(before, 3)} Hz, now {rounded(after, 3)} Hz '
                 f'({after / before:.2f} times)')
@@ -56,9 +57,11 @@ def lines(comparison: Comparison) -> List[str]:
 def side_line(side: Side) -> str:
     """Return a side in a line."""
     number = len(side.model.recordings)
-    what = f'{number} recordings' if number > 1 else 'a recording'
+    what = number_of(number, 'recording')
     if not side.is_recording:
-        what = f'a model of {"1 recording" if number == 1 else what}'
+        what = f'a model of {what}'
+    elif number == 1:
+        what = 'a recording'
     return f'{side.name}: {what}, {side.duration:.1f} s, {len(side.ids)} event types'
 
 
@@ -103,7 +106,7 @@ def headline(comparison: Comparison) -> str:
              GAP: 'sends at another pace', DELAY: 'answers after another delay'}
     whole = who if first.whole else f'{who} ({first.kind[1]})' if first.kind[0] else who
     text = f'{whole} {verbs[first.what]}'
-    return text + (f'; {more} more change{"" if more == 1 else "s"}.' if more else '.')
+    return text + (f'; {number_of(more, "more change")}.' if more else '.')
 
 
 def _change(change: Change) -> Dict[str, Any]:

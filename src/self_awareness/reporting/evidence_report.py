@@ -69,7 +69,8 @@ def on_normal(normal: Sequence[JudgedRun], alarms: FalseAlarms, details: bool) -
             more = f' (and {len(suspects) - 1} more)' if suspects[1:] else ''
             before_s = heads_and_tails.stopped_before_end(run.run.source, alarm)
             end = '' if before_s is None else f', {before_s:.1f} s before the recording ended'
-            text.append(f'  {run.run.source.part}: {_seconds(run, alarm.begin)} s: '
+            begin_s = (alarm.begin - run.run.source.origin) / SECOND_NS
+            text.append(f'  {run.run.source.part}: {begin_s:.1f} s: '
                         f'{suspects[0] if suspects else "no suspect stands out"}{more}{end}')
     return text
 
@@ -143,7 +144,3 @@ def _share(ranks: Sequence[Optional[int]], worst: int) -> str:
     if not ranks:
         return '-'
     return f'{sum(rank is not None and rank <= worst for rank in ranks)} of {len(ranks)}'
-
-
-def _seconds(run: JudgedRun, stamp: int) -> str:
-    return f'{(stamp - run.run.source.origin) / SECOND_NS:.1f}'

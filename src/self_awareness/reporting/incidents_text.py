@@ -15,26 +15,20 @@ _MOST_NAMED = 3
 
 
 def table(incidents: Sequence[KeptIncident], actions: Sequence[Action]) -> List[str]:
-    """Return a line for each incident, below those of a head.
-
-    Args:
-        incidents: to be listed.
-        actions: of the recovery, about these and others.
-    """
+    """Return a head, and a line for each incident; actions of the recovery may be about others."""
     head = ['opened', 'lasted', 'what', 'raised', 'near misses', 'named besides', 'id']
-    return aligned([head, *([to_the_second(each.opened), _lasted(each),
-                             what(each) + _number(of_incident(each, actions)), str(each.alarms),
-                             str(each.near_misses), _besides(each), str(each.id)]
-                            for each in incidents)])
+    rows = [head]
+    for each in incidents:
+        besides = [name for name in named(each) if name != each.component]
+        done = len(of_incident(each, actions))
+        rows.append([to_the_second(each.opened), _lasted(each),
+                     what(each) + (f' (recovery: {done})' if done else ''), str(each.alarms),
+                     str(each.near_misses), first_of(besides, _MOST_NAMED), str(each.id)])
+    return aligned(rows)
 
 
 def details(incident: KeptIncident, actions: Sequence[Action]) -> List[str]:
-    """Return all that is known of an incident, and how to see more.
-
-    Args:
-        incident: to be shown.
-        actions: of the recovery, about this and others.
-    """
+    """Return all that is known of an incident, and how to see more; actions as in table()."""
     rows = [('what', incident.reason or what(incident)),
             ('opened', moment(incident.opened)),
             ('grown', moment(incident.grown)),
@@ -51,12 +45,7 @@ def details(incident: KeptIncident, actions: Sequence[Action]) -> List[str]:
 
 
 def as_values(incident: KeptIncident, actions: Sequence[Action]) -> Dict[str, Any]:
-    """Return an incident as plain values; None where something is not known.
-
-    Args:
-        incident: to be shown.
-        actions: of the recovery, about this and others.
-    """
+    """Return an incident as plain values, None where not known; actions as in table()."""
     return {
         'id': incident.id,
         'level': incident.level,
@@ -96,10 +85,6 @@ def what(incident: KeptIncident) -> str:
     return f'{incident.component} {incident.kind}' if incident.component else incident.kind
 
 
-def _number(actions: Sequence[Action]) -> str:
-    return f' (recovery: {len(actions)})' if actions else ''
-
-
 def _lasted(incident: KeptIncident) -> str:
     if not incident.over:
         return 'open'
@@ -110,10 +95,6 @@ def _lasted(incident: KeptIncident) -> str:
         return f'{seconds:.1f} s'
     minutes = seconds / 60
     return f'{minutes:.0f} min' if minutes < 100.0 else f'{minutes / 60:.1f} h'
-
-
-def _besides(incident: KeptIncident) -> str:
-    return first_of([name for name in named(incident) if name != incident.component], _MOST_NAMED)
 
 
 def _ways_on(incident: KeptIncident) -> List[Sequence[str]]:

@@ -10,6 +10,7 @@ from self_awareness import (USUAL_SHARES, Calibration, EvidenceModel, PaperCalib
 from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.reporting import coverage_text
 from self_awareness.reporting.file_summary import summarise_version
+from self_awareness.reporting.text import seconds_of
 from self_awareness.stamps import SECOND_NS
 
 _RELATIONS = ('pairs', 'deadlines')
@@ -22,7 +23,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
     Times are in seconds and rates in Hz, unless a key says otherwise. What is missing, or not a
     number, is None.
     """
-    duration = sum(_duration(recording) for recording in model.recordings)
+    duration = seconds_of(model.recordings)
     evidence = None if model.detectors == PAPER else EvidenceModel(model)
     types = [_event_type(model, evidence, index, duration)
              for index in range(len(model.event_types))]
@@ -36,7 +37,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'horizon': (model.horizon_bins * model.bin_size / SECOND_NS if model.horizon_bins
                     else None),
         'encoding': encoding_file.values(model.encoding),
-        'recordings': [_recording(recording) for recording in model.recordings],
+        'recordings': list(map(_recording, model.recordings)),
         'duration': duration,
         'events': model.events,
         'lowest_rate': min(rates, default=None),
@@ -93,19 +94,17 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
                   if not math.isnan(limit)]
         summary['calibration'] = _calibration(model.calibration)
         summary['calibration']['judged_tracks'] = dict(Counter(each.channel for each in judged))
-        summary['calibration']['relations'] = _relations(model, evidence)
+        summary['calibration']['relations'] = _relations(model, evidence, model.calibration)
         summary['calibration']['coverage'] = coverage_text.summarise(model.coverage())
     return summary
 
 
-def _relations(model: TrainedModel, evidence: EvidenceModel) -> List[Dict[str, Any]]:
-    """Return what speaks for each relation that might be watched; of a calibrated model.
+def _relations(model: TrainedModel, evidence: EvidenceModel,
+               calibration: Calibration) -> List[Dict[str, Any]]:
+    """Return what speaks for each relation that might be watched.
 
     The own history of an event type is no relation.
     """
-    calibration = model.calibration
-    if calibration is None:
-        return []
     found: List[Dict[str, Any]] = []
     for track, limit, relation in zip(evidence.tracks, calibration.limits, calibration.relations):
         if track.channel not in _RELATIONS or track.from_id == track.to_id:
@@ -160,7 +159,7 @@ def _recording(recording: Recording) -> Dict[str, Any]:
         'bag': recording.bag,
         'start_ns': recording.start,
         'end_ns': recording.end,
-        'duration': _duration(recording),
+        'duration': seconds_of([recording]),
         'robot': recording.robot or None,
         'events': recording.events,
         # As text: a JSON reader that knows only floats would round it.
@@ -179,8 +178,8 @@ def _paper_calibration(calibration: PaperCalibration) -> Dict[str, Any]:
         'normal_windows': calibration.normal_windows,
         'faulty_windows': calibration.faulty_windows,
         'false_alarms_per_hour': _number(calibration.false_alarms_per_hour),
-        'normal': _recordings(calibration.normal),
-        'faulty': _recordings(calibration.faulty),
+        'normal': list(map(_recording, calibration.normal)),
+        'faulty': list(map(_recording, calibration.faulty)),
         'injected': list(calibration.injected),
     }
 
@@ -192,16 +191,8 @@ def _calibration(calibration: Calibration) -> Dict[str, Any]:
         'budget': calibration.budget,
         'windows': calibration.windows,
         'false_alarms_per_hour': _number(calibration.false_alarms_per_hour),
-        'normal': _recordings(calibration.recordings),
+        'normal': list(map(_recording, calibration.recordings)),
     }
-
-
-def _recordings(recordings: List[Recording]) -> List[Dict[str, Any]]:
-    return [_recording(recording) for recording in recordings]
-
-
-def _duration(recording: Recording) -> float:
-    return (recording.end - recording.start) / SECOND_NS
 
 
 def _number(value: float) -> Optional[float]:

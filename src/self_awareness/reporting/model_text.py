@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence
 from self_awareness.judging import EVIDENCE
 from self_awareness.reporting import coverage_text
 from self_awareness.reporting.file_summary import describe_version
-from self_awareness.reporting.text import duration, rounded
+from self_awareness.reporting.text import duration, or_dash, rounded
 from self_awareness.stamps import moment
 
 _LIMITS_OF = {'held-out': 'of recordings that were not trained on',
@@ -97,10 +97,9 @@ def _rates(summary: Mapping[str, Any]) -> str:
 
 
 def _event_type(kind: Mapping[str, Any], fewest_gaps: int) -> str:
-    rate = '-' if kind['rate'] is None else rounded(kind['rate'], 3)
     usual = f'{kind["usual_shortest"]:.3f} - {kind["usual_longest"]:.3f}' if kind['gaps'] else '-'
     rare = '' if kind['judged'] else f'  (too rare to judge: fewer than {fewest_gaps} gaps)'
-    return (f'{kind["count"]:8d} {rate:>10}  {usual:<16} '
+    return (f'{kind["count"]:8d} {or_dash(kind["rate"]):>10}  {usual:<16} '
             f'{kind["source"] or "-"} {kind["scope"]} {kind["type"]}{rare}')
 
 

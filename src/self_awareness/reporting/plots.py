@@ -10,15 +10,14 @@ import numpy as np
 
 from self_awareness import Roc, RocPoint
 from self_awareness.output_files import replacing
+from self_awareness.reporting.report.timeline import SHOWN, Timeline
 from self_awareness.reporting.text import percent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from self_awareness.reporting.report.timeline import Timeline
 
 _DPI = 120
-_SHOWN_LIMITS = 4.0
 _NAMED = 3
 _LEFT_EDGE = 0.05
 _RED, _GREY = '#c62f35', '#7d8694'
@@ -58,10 +57,7 @@ def save_roc(path: str, title: str, curves: Sequence[Tuple[str, Roc]], chosen: R
     Those of all faults together and of the worst few are named.
 
     Args:
-        path: of the file.
-        title: of the plot.
         curves: name and ROC; at least one. The last one is that of all faults together.
-        chosen: the threshold.
 
     Raises:
         OSError: the file cannot be written.
@@ -112,7 +108,7 @@ def _draw_scores(axes: Axes, plot: ScorePlot) -> None:
     shown, limit = plot.timeline, plot.timeline.limit
     times, lowest, highest = shown.edges[:-1], shown.lowest, shown.highest
     if limit is not None and limit < 0:
-        lowest, highest = (np.maximum(each, -_SHOWN_LIMITS) for each in (lowest, highest))
+        lowest, highest = (np.maximum(each, -SHOWN) for each in (lowest, highest))
     _shade(axes, shown.settling, 'settling: no alarm yet', color='0.9')
     _shade(axes, [(start, end) for start, end, _ in plot.alarms], 'alarm', color='tab:red',
            alpha=0.22)

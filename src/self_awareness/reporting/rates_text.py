@@ -3,16 +3,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import Any, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Dict, Iterable, List, Mapping, Sequence, Tuple
 
 import numpy as np
 
 from self_awareness import EventType, TrainedModel
 from self_awareness.recordings import RecordingEvents
-from self_awareness.reporting.text import aligned, rounded
-from self_awareness.stamps import SECOND_NS
-
-_DIGITS = 3
+from self_awareness.reporting.text import aligned, or_dash, seconds_of
 
 _Who = Tuple[str, str]  # component and topic
 
@@ -23,19 +20,12 @@ def summarise(model: TrainedModel, recording: RecordingEvents) -> Dict[str, Any]
     What is off is how many times more or fewer messages came than usual. One message is added to
     both numbers, so that a topic that comes once an hour is not the first one of each short
     recording.
-
-    Args:
-        model: that knows what is usual.
-        recording: as the model encodes it.
     """
-    start, end = recording.part.span(recording.origin, recording.end)
-    seconds = (end - start) / SECOND_NS
-    trained_s = sum(each.end - each.start for each in model.recordings) / SECOND_NS
-    known = len(model.event_types)
-    inside = recording.ids[(recording.stamps >= start) & (recording.stamps <= end)]
-    now = _by_topic(recording.event_types, dict(enumerate(np.bincount(inside).tolist())))
-    usual = _by_topic(model.event_types, {index: model.event_count(index)
-                                          for index in range(known)})
+    named = recording.recording
+    seconds, trained_s = seconds_of([named]), seconds_of(model.recordings)
+    inside = recording.ids[(recording.stamps >= named.start) & (recording.stamps <= named.end)]
+    now = _by_topic(recording.event_types, np.bincount(inside).tolist())
+    usual = _by_topic(model.event_types, map(model.event_count, range(len(model.event_types))))
     unheard = model.unheard
     rows = []
     for who in {*now, *usual}:
@@ -55,22 +45,17 @@ def summarise(model: TrainedModel, recording: RecordingEvents) -> Dict[str, Any]
 def lines(summary: Mapping[str, Any]) -> List[str]:
     """Return the rates of a recording as text."""
     rows = [[each['component'], each['topic'] if each['topic'] != each['component'] else '',
-             *(_number(each[key]) for key in ('rate', 'usual_rate', 'ratio')), each['note']]
+             *(or_dash(each[key]) for key in ('rate', 'usual_rate', 'ratio')), each['note']]
             for each in summary['topics']]
     head = ['component', 'topic', 'now [Hz]', 'usual [Hz]', 'ratio', '']
     return [f'{summary["recording"]}: {summary["duration"]:.1f} s, what is most off first',
             *(f'  {line}' for line in aligned([head, *rows]))]
 
 
-def _by_topic(event_types: Sequence[EventType], counts: Mapping[int, int]) -> Dict[_Who, int]:
+def _by_topic(event_types: Sequence[EventType], counts: Iterable[int]) -> Dict[_Who, int]:
     """Return the messages of each component on each topic, of which there are some."""
     found: Counter = Counter()
-    for index, count in counts.items():
-        kind = event_types[index]
+    for kind, count in zip(event_types, counts):
         if count and kind.is_message:
             found[kind.source or kind.scope, kind.scope] += count
     return dict(found)
-
-
-def _number(value: Any) -> str:
-    return '-' if value is None else rounded(value, _DIGITS)

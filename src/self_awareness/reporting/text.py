@@ -2,7 +2,10 @@
 from __future__ import annotations
 
 import math
-from typing import List, Optional, Sequence
+from typing import Iterable, List, Optional, Sequence
+
+from self_awareness import Recording
+from self_awareness.stamps import SECOND_NS
 
 _FORMULA = ('=', '+', '-', '@')
 
@@ -15,6 +18,11 @@ def rounded(value: float, digits: int) -> str:
     return f'{float(f"{value:.{digits}g}"):g}'
 
 
+def or_dash(value: Optional[float]) -> str:
+    """Return a number with three significant digits; '-': it is not known."""
+    return '-' if value is None else rounded(value, 3)
+
+
 def duration(seconds: float) -> str:
     """Return how long something lasts as people say it: 0.38 s, 12 s, 4 min, 2 h 10 min."""
     if seconds < 100.0:
@@ -24,6 +32,11 @@ def duration(seconds: float) -> str:
         return f'{minutes} min'
     hours, minutes = divmod(minutes, 60)
     return f'{hours} h' + (f' {minutes:02d} min' if minutes else '')
+
+
+def seconds_of(recordings: Iterable[Recording]) -> float:
+    """Return how long recordings last together [s]."""
+    return sum(each.end - each.start for each in recordings) / SECOND_NS
 
 
 def number_of(number: int, what: str) -> str:
@@ -50,13 +63,7 @@ def of_limit(lowest: float, threshold: Optional[float]) -> str:
 
 
 def first_of(names: Sequence[str], most: int, joint: str = ' ') -> str:
-    """Return names, of many the first ones: '/a, /b and 3 more'.
-
-    Args:
-        names: to be listed.
-        most: that are.
-        joint: before the `and`.
-    """
+    """Return names, of many the first ones: '/a, /b and 3 more', with a joint before the `and`."""
     more = len(names) - most
     return ', '.join(names[:most]) + (f'{joint}and {more} more' if more > 0 else '')
 

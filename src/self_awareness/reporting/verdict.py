@@ -10,7 +10,7 @@ from self_awareness import HOURS_OF_ROBOTS, Coverage, TrainedModel
 from self_awareness.judging import PAPER
 from self_awareness.reporting import coverage_text
 from self_awareness.reporting.text import (aligned, duration, first_lines, first_of, number_of,
-                                           rounded)
+                                           rounded, seconds_of)
 from self_awareness.stamps import SECOND_NS
 
 _SOON_S = 1.0
@@ -27,7 +27,8 @@ def lines(model: TrainedModel) -> List[str]:
     coverage = coverage_text.summarise(model.coverage())
     blind = sorted((each['component'], _why(model, each)) for each in coverage
                    if not each['watched'])
-    parts = [*_false_alarms(model), *_deaths(coverage, _noun(model))]
+    noun = 'node' if any(kind.source for kind in model.event_types) else 'topic'
+    parts = [*_false_alarms(model), *_deaths(coverage, noun)]
     if len(blind) == 1:
         parts.append(f'{blind[0][0]} is not watched: {blind[0][1]}')
     elif blind:
@@ -61,12 +62,8 @@ def _learned_from(model: TrainedModel) -> str:
     held_out = (model.calibration.recordings
                 if model.calibration is not None and has_limits(model) else [])
     recordings = [*model.recordings, *held_out]
-    seconds = sum(each.end - each.start for each in recordings) / SECOND_NS
-    return f'{number_of(model.starts_of(recordings), "start")}, {duration(seconds)}'
-
-
-def _noun(model: TrainedModel) -> str:
-    return 'node' if any(kind.source for kind in model.event_types) else 'topic'
+    return (f'{number_of(model.starts_of(recordings), "start")}, '
+            f'{duration(seconds_of(recordings))}')
 
 
 def _false_alarms(model: TrainedModel) -> List[str]:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Tuple
+from typing import Any, List, Tuple
 
 import pytest
 
@@ -10,6 +10,9 @@ from self_awareness import Acceptance, TrainedModel, accepted_file, read_accepte
 from self_awareness.commands import calibrate, train
 
 Bags = Tuple[str, str]
+
+PROGRAMS = [(train, '--add-to', []), (calibrate, '--model', ['--normal'])]
+"""How each is told a model and a recording."""
 
 OF_SOURCE = Acceptance('/joystick', '/joy', 'stranger', 10, '/rqt')
 OF_OUTPUT = Acceptance('/camera', '/image', 'slow', 20, '/top')
@@ -32,19 +35,22 @@ def heard(model: str) -> Acceptance:
     return Acceptance(known.event_types[0].source, '', 'slow', min(known.heard_until))
 
 
-def test_calibrate_keeps_what_is_accepted_beside_its_output(models: Tuple[str, str],
-                                                            long_bags: Bags, capsys) -> None:
+@pytest.mark.parametrize('program, source_option, bag_options', PROGRAMS)
+def test_what_is_accepted_beside_the_output_is_kept(
+        models: Tuple[str, str], long_bags: Bags, capsys, program: Any, source_option: str,
+        bag_options: List[str]) -> None:
     source, output = models
     learned = heard(source)
     accepted_file.keep([*accepted_file.beside(output), learned], output)
-    assert calibrate.main(['--model', source, '--normal', long_bags[1], '-o', output]) == 0
+    assert program.main([source_option, source, *bag_options, long_bags[1], '-o', output]) == 0
     assert read_accepted(output + '.accepted') == [OF_OUTPUT, Acceptance('/nobody', at=5),
                                                    OF_SOURCE]
     assert read_accepted(source + '.accepted') == [OF_SOURCE]
     said = capsys.readouterr().out
-    assert f'judged again: {learned.component} (slow)' in said
+    assert f'learned now, so it is judged again: {learned.component} (slow)' in said
     assert 'accepted, and not learned: /joystick on /joy (stranger)' in said
     assert 'accepted, and not learned: /camera on /image (slow)' in said
+    assert 'accepted, and not learned: /nobody' in said
 
 
 def test_calibrate_in_place_leaves_the_file_alone(models: Tuple[str, str],
@@ -56,26 +62,12 @@ def test_calibrate_in_place_leaves_the_file_alone(models: Tuple[str, str],
     assert read_accepted(source + '.accepted') == accepted
 
 
-def test_train_keeps_what_is_accepted_beside_its_output(models: Tuple[str, str], long_bags: Bags,
-                                                        capsys) -> None:
-    source, output = models
-    learned = heard(source)
-    accepted_file.keep([*accepted_file.beside(output), learned], output)
-    assert train.main(['--add-to', source, long_bags[1], '-o', output]) == 0
-    assert read_accepted(output + '.accepted') == [OF_OUTPUT, Acceptance('/nobody', at=5),
-                                                   OF_SOURCE]
-    said = capsys.readouterr().out
-    assert f'learned now, so it is judged again: {learned.component} (slow)' in said
-    assert 'accepted, and not learned: /nobody' in said
-
-
-def test_a_damaged_file_is_found_before_anything_is_written(models: Tuple[str, str],
-                                                            long_bags: Bags, tmp_path: Path,
-                                                            capsys) -> None:
+@pytest.mark.parametrize('program, source_option, bag_options', PROGRAMS)
+def test_a_damaged_file_is_found_before_anything_is_written(
+        models: Tuple[str, str], long_bags: Bags, tmp_path: Path, capsys, program: Any,
+        source_option: str, bag_options: List[str]) -> None:
     source, output = models
     (tmp_path / 'output.accepted').write_text('what is this')
-    for program, arguments in ((train, ['--add-to', source, long_bags[1]]),
-                               (calibrate, ['--model', source, '--normal', long_bags[1]])):
-        assert program.main([*arguments, '-o', output]) == 1
-        assert 'output.accepted' in capsys.readouterr().err
-        assert not (tmp_path / 'output').exists()
+    assert program.main([source_option, source, *bag_options, long_bags[1], '-o', output]) == 1
+    assert 'output.accepted' in capsys.readouterr().err
+    assert not (tmp_path / 'output').exists()

@@ -6,12 +6,13 @@ import math
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple
 
+import conftest
 import pytest
 import rosbag
 import rospy
 from std_msgs.msg import Int32, String
 
-from self_awareness import EvidenceModel, TrainedModel, encoding_file, read_events
+from self_awareness import TrainedModel, encoding_file
 from self_awareness.commands import calibrate, convert, info, merge, score, train
 
 DRIVE_S, CHARGE_S, CYCLES = 20.0, 60.0, 4
@@ -67,19 +68,27 @@ def learn(folder: Path, bags: List[str], encoding: str) -> str:
     return model
 
 
-@pytest.fixture(name='normal', scope='module')
-def _normal(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
+@pytest.fixture()
+def encoding(tmp_path: Path) -> str:
+    """The file that names the mode."""
+    file = tmp_path / 'encoding.yaml'
+    file.write_text(ENCODING)
+    return str(file)
+
+
+@pytest.fixture(scope='module')
+def normal(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
     folder = tmp_path_factory.mktemp('normal')
     return [write(folder / f'{number}.bag', 10000.0 * number) for number in range(1, 5)]
 
 
-@pytest.fixture(name='model', scope='module')
-def _model(normal: List[str], tmp_path_factory: pytest.TempPathFactory) -> str:
+@pytest.fixture(scope='module')
+def model(normal: List[str], tmp_path_factory: pytest.TempPathFactory) -> str:
     return learn(tmp_path_factory.mktemp('mode'), normal, ENCODING)
 
 
-@pytest.fixture(name='plain', scope='module')
-def _plain(normal: List[str], tmp_path_factory: pytest.TempPathFactory) -> str:
+@pytest.fixture(scope='module')
+def plain(normal: List[str], tmp_path_factory: pytest.TempPathFactory) -> str:
     return learn(tmp_path_factory.mktemp('plain'), normal, 'mode: {}\n')
 
 
@@ -114,51 +123,21 @@ def test_a_mode_that_training_never_saw_is_no_stranger(model: str, tmp_path: Pat
             f'    /logic {STATE} std_msgs/String[mode: LOST]: 1\n') in said
 
 
-def test_the_same_is_said_of_an_event_log(model: str, tmp_path: Path) -> None:
+def test_the_same_is_said_of_an_event_log(model: str, encoding: str, tmp_path: Path) -> None:
     bag = write(tmp_path / 'dead.bag', 90000.0, planner_dies=DRIVE_S + CHARGE_S + 4.0)
-    file = tmp_path / 'encoding.yaml'
-    file.write_text(ENCODING)
     log = str(tmp_path / 'dead.events.bag')
-    assert convert.main([bag, '--encoding', str(file), '-o', log]) == 0
+    assert convert.main([bag, '--encoding', encoding, '-o', log]) == 0
     of_bag, of_log = (alarms(model, recording) for recording in (bag, log))
     assert of_bag and of_bag == of_log
 
 
-def test_a_log_of_the_robots_own_names_is_renamed_when_it_is_read(normal: List[str],
-                                                                  tmp_path: Path) -> None:
-    file = tmp_path / 'encoding.yaml'
-    file.write_text(ENCODING)
+def test_a_log_of_the_robots_own_names_is_renamed_when_it_is_read(
+        normal: List[str], encoding: str, tmp_path: Path) -> None:
     log = str(tmp_path / 'normal.events.bag')
-    assert convert.main([normal[0], '--encoding', str(file), '-o', log]) == 0
-    output = str(tmp_path / 'm')
-    assert train.main([log, '--rename', '/logic/(.*)', r'/\1', '-o', output]) == 0
-    trained = TrainedModel.load(output)
+    assert convert.main([normal[0], '--encoding', encoding, '-o', log]) == 0
+    trained = conftest.trained([log], tmp_path / 'm', '--rename', '/logic/(.*)', r'/\1')
     assert trained.encoding.mode == ('/current_state', 'data')
     assert {kind.scope for kind in trained.event_types if kind.tells_mode} == {'/current_state'}
-
-
-def limits(trained: TrainedModel) -> Dict[Tuple[str, str, str], float]:
-    """Return the limits by channel and the event types that it looks at."""
-    kinds = trained.event_types
-    return {(track.name, str(kinds[track.to_id]), str(kinds[track.from_id])): limit
-            for track, limit in zip(EvidenceModel(trained).tracks,
-                                    trained.calibration.limits)}
-
-
-def test_the_mode_changes_nothing_else(normal: List[str], model: str, plain: str) -> None:
-    with_mode, without = (TrainedModel.load(path) for path in (model, plain))
-    rules = with_mode.encoding
-    events, others = (read_events(normal[0], each) for each in (rules, without.encoding))
-    tells = [kind.tells_mode for kind in events.event_types]
-    assert sum(tells) == 2
-    assert [str(events.event_types[i]) for i in events.ids if not tells[i]] == [
-        str(others.event_types[i]) for i in others.ids]
-    theirs, ours = limits(without), limits(with_mode)
-    assert {key for key in ours if key not in theirs} == {
-        ('company', f'/planner {PLAN} std_msgs/Int32',
-         f'/logic {STATE} std_msgs/String[mode: DRIVING]')}
-    # What was latched when the recording began is heard a moment before all else.
-    assert {key: ours[key] for key in theirs} == pytest.approx(theirs, rel=1e-3, nan_ok=True)
 
 
 def test_the_model_keeps_what_tells_the_mode(model: str, plain: str, tmp_path: Path,
@@ -182,13 +161,9 @@ def test_a_field_that_the_messages_lack_is_named(normal: List[str], tmp_path: Pa
     assert STATE in said and 'state_name' in said and '1.bag' in said
 
 
-def test_a_recording_that_lasts_a_part_knows_the_mode(normal: List[str], tmp_path: Path) -> None:
-    file = tmp_path / 'encoding.yaml'
-    file.write_text(ENCODING)
-    output = tmp_path / 'm'
-    assert train.main([*normal, '--start', '3', '--encoding', str(file),
-                       '-o', str(output)]) == 0
-    trained = TrainedModel.load(str(output))
+def test_a_recording_that_lasts_a_part_knows_the_mode(normal: List[str], encoding: str,
+                                                      tmp_path: Path) -> None:
+    trained = conftest.trained(normal, tmp_path / 'm', '--start', '3', '--encoding', encoding)
     driving = next(index for index, kind in enumerate(trained.event_types)
                    if str(kind).endswith('[mode: DRIVING]'))
     seconds = len(normal) * (CYCLES * DRIVE_S - 3.0)

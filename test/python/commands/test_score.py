@@ -1,118 +1,227 @@
-"""`score --detector paper`: abnormal intervals, suspects, and the table of windows."""
+"""`score` by either detector: alarms and their suspects, what is new, parts, the table, codes."""
 from __future__ import annotations
 
 import csv
 import re
 import shutil
-from typing import Callable, Dict, List, Tuple
+from pathlib import Path
+from typing import Callable, Dict, List, Sequence, Tuple
 
 import numpy as np
 import pytest
-from conftest import robot
+from conftest import jittery_robot
 
+from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, EvidenceModel,
+                            TrainedModel, accepted_file, judge_by_evidence, read_events)
 from self_awareness.commands import calibrate, score
 
-Bags = Tuple[str, str]
-
 PAPER = ('--detector', 'paper')
+MakeBag = Callable[..., str]
 
 
 @pytest.fixture(scope='module')
-def calibrated(model_file: str, robot_bags: Bags, tmp_path_factory) -> str:
+def model(evidence_model: str, long_bags: Tuple[str, str],
+          tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A model with limits, and with a threshold of the paper's score."""
     path = str(tmp_path_factory.mktemp('calibrated') / 'm')
-    assert calibrate.main(['--model', model_file, '--normal', robot_bags[1], *PAPER, '--inject',
+    assert calibrate.main(['--model', evidence_model, '--normal', long_bags[1], *PAPER, '--inject',
                            'crash:/laser', 'crash:/slam', '-o', path]) == 0
     return path
 
 
 @pytest.fixture
-def dead_laser(make_bag: Callable[..., str]) -> str:
+def dead_laser(make_bag: MakeBag) -> str:
     """Its laser falls silent from 12 s to 20 s."""
-    return make_bag('dead.bag', [m for m in robot(3000.0)
+    return make_bag('dead.bag', [m for m in jittery_robot(3000.0, 30.0, 3)
                                  if not (3012.0 <= m[0] < 3020.0 and m[1] == '/laser')])
 
 
-def rows_of(path) -> List[Dict[str, str]]:
+@pytest.fixture
+def new(make_bag: MakeBag) -> str:
+    """A node that training never saw speaks at 10.02 s."""
+    return make_bag('new.bag', sorted([*jittery_robot(3000.0, 30.0, 5), (3010.02, '/new', '/a')]))
+
+
+def rows_of(path: Path) -> List[Dict[str, str]]:
     with open(path, newline='') as file:
         return list(csv.DictReader(file))
 
 
-def test_the_alarm_and_its_suspect_are_printed(calibrated: str, dead_laser: str, capsys) -> None:
-    assert score.main([dead_laser, '--model', calibrated, *PAPER, '--details']) == 0
+def alarms(out: str) -> List[Tuple[float, float]]:
+    """Return start [s] and end [s] of printed alarms."""
+    return [(float(start), float(end)) for start, end in re.findall(
+        r'^    ([\d.]+) - ([\d.]+) s.* UTC(?:: .+)?$', out, re.MULTILINE)]
+
+
+@pytest.mark.parametrize('options, reached', [
+    ((), r'\d\d+ % of the limit, (.+, )?overdue'),
+    (PAPER, r'lowest score ([\d.]+), threshold [\d.]+, score')], ids=['evidence', 'paper'])
+def test_the_alarm_and_its_suspect_are_printed(model: str, dead_laser: str,
+                                               options: Sequence[str], reached: str,
+                                               capsys) -> None:
+    assert score.main([dead_laser, '--model', model, '--details', *options]) == 0
     out = capsys.readouterr().out
+    (start, end), = alarms(out)
+    assert 12.0 < start < 13.5 and 19.5 < end < 26.0
     told, = re.findall(r'^  (/.*)$', out, re.MULTILINE)
-    assert told == '/laser (/scan) fell silent at 11.9 s, and came back at 20.0 s.'
-    interval = re.search(r'^    ([\d.]+) - ([\d.]+) s.*, (.+) - (.+) UTC: lowest score (\S+), '
-                         r'threshold (\S+), score$', out, re.MULTILINE)
-    start, end = float(interval[1]), float(interval[2])
-    assert 12.0 < start < 13.5 and 19.5 < end < 23.0
-    assert interval[3].startswith('1970-01-01 00:50:1')  # 3012 s after the epoch
-    assert float(interval[5]) < float(interval[6])
+    assert told == '/laser (/scan) fell silent at 12.0 s, and came back at 20.0 s.'
+    assert re.search(r'^    12\.\d - .*, 1970-01-01 00:50:1.* - 1970-01-01 00:50:2.* UTC: '
+                     + reached, out, re.MULTILINE)  # 3012 s after the epoch
     assert re.search(r'^    1\. /laser /scan std_msgs/String: silent for ', out, re.MULTILINE)
 
 
-def test_silence_is_abnormal_and_has_no_score(calibrated: str, make_bag: Callable[..., str],
-                                              tmp_path, capsys) -> None:
-    silent = make_bag('silent.bag', [m for m in robot(3000.0) if not 3012.0 <= m[0] < 3015.0])
-    table = tmp_path / 'w.csv'
-    assert score.main([silent, '--model', calibrated, *PAPER, '--csv', str(table)]) == 0
-    quiet = [row for row in rows_of(table) if row['events'] == '0']
+def test_a_fault_during_the_alarm_is_printed_with_its_time(model: str, make_bag: MakeBag,
+                                                           capsys) -> None:
+    bag = make_bag('two.bag', [m for m in jittery_robot(3000.0, 60.0, 3)
+                               if not (m[0] >= 3012.0 and m[1] == '/laser')
+                               and not (m[0] >= 3040.0 and m[1] == '/battery')])
+    assert score.main([bag, '--model', model]) == 0
+    out = capsys.readouterr().out
+    assert len(alarms(out)) == 1
+    since, = re.findall(r'^    since ([\d.]+) s /battery /charge std_msgs/String: silent for ',
+                        out, re.MULTILINE)
+    assert 40.0 < float(since) < 43.0
+
+
+def test_a_suspicion_is_printed_with_its_reason(model: str, new: str, capsys) -> None:
+    assert score.main([new, '--model', model]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == f'{new}: 30 s, 1 suspicion'
+    assert re.fullmatch(r'    suspicion: 10\.1 - 12\.\d s, 1970-\S+ \S+ - 1970-\S+ \S+ UTC',
+                        lines[2])
+    assert lines[3:] == [
+        '    1. /new /a std_msgs/String: never seen in training, 1 in this window',
+        '1 recording, 30 s: 1 suspicion']
+
+
+def test_silence_of_the_papers_detector_is_abnormal_and_has_no_score(
+        model: str, make_bag: MakeBag, tmp_path: Path) -> None:
+    silent = make_bag('silent.bag', [m for m in jittery_robot(3000.0, 30.0, 3)
+                                     if not 3012.0 <= m[0] < 3015.0])
+    assert score.main([silent, '--model', model, *PAPER, '--csv', str(tmp_path / 'w.csv')]) == 0
+    quiet = [row for row in rows_of(tmp_path / 'w.csv') if row['events'] == '0']
     assert len(quiet) >= 29
     assert {(row['score'], row['abnormal']) for row in quiet} == {('', '1')}
 
 
-def test_silence_up_to_the_end_of_the_recording_is_seen(calibrated: str,
-                                                        make_bag: Callable[..., str],
+def test_silence_up_to_the_end_of_the_recording_is_seen(model: str, make_bag: MakeBag,
                                                         capsys) -> None:
     # All components are dead; only the clock, which is no event, goes on.
-    bag = make_bag('end.bag', [*robot(3000.0, 10.0), (3015.0, '/clock_server', '/clock')])
-    assert score.main([bag, '--model', calibrated, *PAPER]) == 0
+    bag = make_bag('end.bag', [*jittery_robot(3000.0, 10.0, 3),
+                               (3015.0, '/clock_server', '/clock')])
+    assert score.main([bag, '--model', model, *PAPER]) == 0
     assert '- 15.1 s (to the end of the recording' in capsys.readouterr().out
 
 
-def test_unknown_events_are_counted_and_named(calibrated: str, make_bag: Callable[..., str],
-                                              tmp_path, capsys) -> None:
-    bag = make_bag('new.bag', sorted([*robot(3000.0), (3010.0, '/new', '/a'),
-                                      (3011.0, '/new', '/a'), (3012.0, '/new', '/b')]))
+@pytest.mark.parametrize('options, raised', [
+    (['--unknown', 'error'], True), (['--unknown', 'warn'], False),
+    (['--unknown', 'ignore'], False), (PAPER, False)])
+def test_what_was_never_seen_is_named_and_an_alarm_where_that_is_asked_for(
+        model: str, new: str, tmp_path: Path, options: Sequence[str], raised: bool,
+        capsys) -> None:
     table = tmp_path / 'w.csv'
-    assert score.main([bag, '--model', calibrated, *PAPER, '--details', '--csv',
-                       str(table)]) == 0
+    assert score.main([new, '--model', model, '--details', '--csv', str(table), *options]) == 0
     out = capsys.readouterr().out
-    assert '    /new /a std_msgs/String: 2\n    /new /b std_msgs/String: 1\n' in out
-    assert sum(int(row['unknown']) for row in rows_of(table)) == 3
+    assert '    /new /a std_msgs/String: 1\n' in out
+    assert [start for start, _ in alarms(out)] == [pytest.approx(10.1, abs=0.11)] * raised
+    assert sum(int(row['unknown']) for row in rows_of(table)) == 1
 
 
-def test_a_name_that_a_spreadsheet_would_compute_is_a_text(calibrated: str, robot_bags, tmp_path,
+def test_what_is_accepted_is_not_judged_and_is_said(model: str, new: str, tmp_path: Path,
+                                                    capsys) -> None:
+    copy = str(shutil.copy(model, tmp_path / 'copy'))
+    accepted_file.keep([Acceptance('/new', '/a', 'stranger')], copy)
+    assert score.main([new, '--model', copy]) == 0
+    out = capsys.readouterr().out
+    assert 'accepted, so not judged: /new on /a (stranger)' in out
+    assert f'{new}: 30 s, nothing abnormal\n' in out
+
+
+def test_a_part_is_judged_by_itself(model: str, dead_laser: str, tmp_path: Path, capsys) -> None:
+    table = tmp_path / 'w.csv'
+    assert score.main([f'{dead_laser}@0-11', f'{dead_laser}@11', f'{dead_laser}@2-25', '--model',
+                       model, '--csv', str(table)]) == 0
+    before, after, both = re.split(f'^{dead_laser}', capsys.readouterr().out,
+                                   flags=re.MULTILINE)[1:]
+    assert before.startswith('@0-11: 11 s, nothing abnormal\n') and alarms(before) == []
+    # Times count from the bag's first message; the part settles until 16 s.
+    assert after.startswith('@11: 19 s, 1 incident\n')
+    assert [start for start, _ in alarms(after)] == [pytest.approx(16.1, abs=0.21)]
+    assert both.startswith('@2-25: 23 s, 1 incident\n')
+    assert [start for start, _ in alarms(both)] == [pytest.approx(12.3, abs=0.21)]
+    starts = [int(row['window_start_ns']) for row in rows_of(table)
+              if row['bag'] == f'{dead_laser}@2-25']
+    assert (min(starts), max(starts)) == (3002 * 10**9, 3025 * 10**9)
+
+
+def test_normal_operation_is_no_alarm(model: str, make_bag: MakeBag, capsys) -> None:
+    """Where all are watched, nothing is said of that."""
+    bag = make_bag('normal.bag', jittery_robot(7000.0, 60.0, 4))
+    assert score.main([bag, '--model', model]) == 0
+    assert capsys.readouterr().out == (f'{bag}: 60 s, nothing abnormal\n'
+                                       '1 recording, 60 s: nothing abnormal\n')
+    assert score.main([bag, '--model', model, '--details']) == 0
+    assert (', 0 abnormal (0.0%; settling left out), alarms: 0, suspicions: 0\n'
+            in capsys.readouterr().out)
+
+
+def test_the_table_has_every_window_with_all_digits(model: str, dead_laser: str,
+                                                    tmp_path: Path) -> None:
+    table = tmp_path / 'w.csv'
+    assert score.main([dead_laser, '--model', model, '--csv', str(table)]) == 0
+    assert table.read_text().splitlines()[0] \
+        == 'bag,window_start_ns,events,unknown,score,threshold,abnormal'
+    rows, trained = rows_of(table), TrainedModel.load(model)
+    events = read_events(dead_laser, trained.encoding, trained.event_types)
+    verdicts = judge_by_evidence(trained, EvidenceModel(trained), DetectorParameters(),
+                                 events.stamps, events.ids)
+    assert [float(row['score']) for row in rows] == verdicts.score.tolist()
+    assert [row['abnormal'] == '1' for row in rows] == verdicts.abnormal.tolist()
+    assert {float(row['threshold']) for row in rows} == {EVIDENCE_THRESHOLD}
+    # A window of silence has a score, too: silence is evidence.
+    assert np.isfinite(verdicts.score).all() and verdicts.score.min() < EVIDENCE_THRESHOLD
+
+
+def test_a_name_that_a_spreadsheet_would_compute_is_a_text(model: str, robot_bags, tmp_path: Path,
                                                            monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     for name in ('=1+1.bag', '@a.bag', '+a.bag'):
         shutil.copy(robot_bags[1], name)
-        assert score.main([name, '--model', calibrated, *PAPER, '--csv', 'w.csv']) == 0
-        assert {row['bag'] for row in rows_of(tmp_path / 'w.csv')} == {f"'{name}"}
-        assert calibrate.main(['--model', calibrated, '--normal', name, '--detector', 'paper',
-                               '--cutoff', 'fpr=0.1', '-o', 'm', '--csv', 'c.csv']) == 0
-        assert {row['bag'] for row in rows_of(tmp_path / 'c.csv')} == {f"'{name}"}
+        assert score.main([name, '--model', model, *PAPER, '--csv', 'w.csv']) == 0
+        assert calibrate.main(['--model', model, '--normal', name, *PAPER, '--cutoff', 'fpr=0.1',
+                               '-o', 'm', '--csv', 'c.csv']) == 0
+        for table in (tmp_path / 'w.csv', tmp_path / 'c.csv'):
+            assert {row['bag'] for row in rows_of(table)} == {f"'{name}"}
 
 
-def test_the_options_of_the_alarm_are_heard(calibrated: str, dead_laser: str, capsys) -> None:
-    def alarms(*options: str) -> List[Tuple[float, float]]:
-        assert score.main([dead_laser, '--model', calibrated, *PAPER, *options]) == 0
-        return [(float(a), float(b)) for a, b in
-                re.findall(r'^    ([\d.]+) - ([\d.]+) s', capsys.readouterr().out, re.MULTILINE)]
+def test_the_options_of_the_alarm_are_heard(model: str, dead_laser: str, capsys) -> None:
+    def times(*options: str) -> List[Tuple[float, float]]:
+        assert score.main([dead_laser, '--model', model, *PAPER, *options]) == 0
+        return alarms(capsys.readouterr().out)
 
-    usual = alarms()
+    usual = times()
     assert len(usual) == 1
-    assert alarms('--settle-time', '25') == []
-    late = alarms('--alarm-windows', '30', '--alarm-of', '30')
+    assert times('--settle-time', '25') == []
+    late = times('--alarm-windows', '30', '--alarm-of', '30')
     assert not late or late[0][0] > usual[0][0] + 1.0
-    assert alarms('--hold-time', '6')[0][1] == pytest.approx(usual[0][1] + 4.0, abs=0.11)
+    assert times('--hold-time', '4')[0][1] == pytest.approx(usual[0][1] + 2.0, abs=0.11)
 
 
-def test_the_plot_is_a_picture_that_shows_the_alarm(calibrated: str, dead_laser: str, tmp_path,
-                                                    capsys) -> None:
+def test_a_model_without_limits_scores_nothing_abnormal_and_says_so(
+        model_file: str, dead_laser: str, tmp_path: Path, capsys) -> None:
+    """Its recording was too short for preliminary limits."""
+    table = tmp_path / 'w.csv'
+    assert score.main([dead_laser, '--model', model_file, '--csv', str(table)]) == 0
+    out = capsys.readouterr().out
+    assert f'{model_file}: not calibrated' in out and 'calibrate' in out and 'alarm' not in out
+    assert {(row['threshold'], row['abnormal']) for row in rows_of(table)} == {('', '0')}
+
+
+def test_the_plot_is_a_picture_that_shows_the_alarm(model: str, dead_laser: str,
+                                                    tmp_path: Path) -> None:
     from matplotlib.image import imread
     plot = tmp_path / 'p.png'
-    assert score.main([dead_laser, '--model', calibrated, *PAPER, '--plot', str(plot)]) == 0
+    assert score.main([dead_laser, '--model', model, *PAPER, '--plot', str(plot)]) == 0
     pixels = imread(str(plot))[:, :, :3]
     shade = (np.abs(pixels - (0.965, 0.811, 0.814)).max(axis=2) < 0.02).sum(axis=0)
     # The alarm lasts for a third of the time, nearly from top to bottom.
@@ -120,23 +229,23 @@ def test_the_plot_is_a_picture_that_shows_the_alarm(calibrated: str, dead_laser:
     assert [path.name for path in tmp_path.iterdir() if 'part' in path.name] == []
 
 
-def test_scripts_see_an_alarm_by_the_exit_code(calibrated: str, dead_laser: str, model_file: str,
-                                               make_bag: Callable[..., str], capsys) -> None:
-    normal = make_bag('normal.bag', robot(7000.0))
-    assert score.main([normal, '--model', calibrated, *PAPER, '--fail']) == 0
-    assert score.main([normal, dead_laser, '--model', calibrated, *PAPER, '--fail']) == 3
+def test_scripts_see_an_alarm_by_the_exit_code(model: str, dead_laser: str, model_file: str,
+                                               make_bag: MakeBag, capsys) -> None:
+    normal = make_bag('normal.bag', jittery_robot(7000.0, 30.0, 4))
+    assert score.main([normal, '--model', model, '--fail']) == 0
+    assert score.main([normal, dead_laser, '--model', model, '--fail']) == 3
     assert capsys.readouterr().out.splitlines()[-1] == '2 recordings, 60 s: 1 incident'
-    assert score.main([dead_laser, '/gone.bag', '--model', calibrated, *PAPER, '--fail']) == 1
-    assert score.main([dead_laser, '--model', model_file, *PAPER, '--fail']) == 1
+    assert score.main([dead_laser, '/gone.bag', '--model', model, '--fail']) == 1
+    assert score.main([dead_laser, '--model', model_file, '--fail']) == 1
     assert (f'--fail: {model_file} is not calibrated, so nothing would ever be an alarm'
             in capsys.readouterr().err)
 
 
-def test_the_report_is_opened_in_a_browser(calibrated: str, dead_laser: str, tmp_path, capsys,
+def test_the_report_is_opened_in_a_browser(model: str, dead_laser: str, tmp_path: Path, capsys,
                                            monkeypatch: pytest.MonkeyPatch) -> None:
     report = tmp_path / 'a report.html'
     opened: List[str] = []
-    command = [dead_laser, '--model', calibrated, *PAPER, '--open']
+    command = [dead_laser, '--model', model, '--open']
     monkeypatch.chdir(tmp_path)
 
     def show(url: str) -> bool:

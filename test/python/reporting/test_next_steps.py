@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import rosbag
 import rospy
-from conftest import write_bag
+from conftest import put, write_bag
 from judged_recordings import dead, judged, with_graph, without_laser
 from rosgraph_msgs.msg import Log
 
@@ -21,10 +21,7 @@ def log(path: str, topic: str, lines: 'list[tuple[float, str, int, str]]') -> No
     """Add lines to a bag: stamp [s], node, level, text."""
     with rosbag.Bag(path, 'a') as bag:
         for stamp, node, level, text in lines:
-            bag.write(topic, Log(level=level, name=node, msg=text), rospy.Time.from_sec(stamp),
-                      connection_header={'topic': topic, 'callerid': node, 'type': Log._type,
-                                         'md5sum': Log._md5sum,
-                                         'message_definition': Log._full_text})
+            put(bag, node, topic, Log(level=level, name=node, msg=text), stamp)
 
 
 @pytest.fixture
@@ -70,9 +67,9 @@ def test_an_incident_has_the_log_and_the_commands(evidence_model: str, bag: str,
                                                   tmp_path: Path) -> None:
     found = section(judged(with_graph(evidence_model, tmp_path / 'm'), bag), 'x')
     steps = found.details[found.incidents[0].key].next
-    assert [(line.level, line.text.split()[0]) for line in steps.log] == [
+    assert [(level, text.split()[0]) for _, level, text in steps.log] == [
         ('INFO', 'started'), ('ERROR', 'motor')]
-    assert steps.log[1].time == pytest.approx(11.9, abs=0.1)
+    assert steps.log[1][0] == pytest.approx(11.9, abs=0.1)
     assert steps.play is not None and steps.layout is not None
     command = shlex.split(steps.play)
     assert command[:3] == ['rosbag', 'play', '-s'] and command[-1] == bag

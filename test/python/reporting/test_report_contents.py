@@ -14,9 +14,7 @@ from self_awareness.reporting.report import figures, timeline
 from self_awareness.reporting.report.against import against
 from self_awareness.reporting.report.intervals import ALARM
 from self_awareness.reporting.report.neighbours import ROOT, VICTIM
-from self_awareness.reporting.report.section import (ALARMED, NOT_JUDGED, QUIET, SUSPICIOUS,
-                                                     section)
-from self_awareness.reporting.report.timeline import overview
+from self_awareness.reporting.report.section import ALARMED, SUSPICIOUS, section
 
 
 def test_the_summary_and_the_details_say_who_when_and_why(evidence_model: str,
@@ -39,7 +37,8 @@ def test_the_summary_and_the_details_say_who_when_and_why(evidence_model: str,
     assert incident.level == ALARM and 12.0 < alarm.start < 13.0 and alarm.cleared
     first, histogram = alarm.suspects[0], details.evidence[0]
     assert (first.component, first.short) == ('/laser', 'fell silent')
-    assert histogram.title == 'gaps between two /laser /scan std_msgs/String'
+    assert histogram.caption == ('gaps between two /laser /scan std_msgs/String; '
+                                 'shaded: what is usual')
     assert histogram.seen == pytest.approx(alarm.start - alarm.began)
     assert histogram.seen > histogram.edges[-1] > 0.05
     assert histogram.edges[0] < 0.05 < histogram.usual[1]
@@ -62,7 +61,7 @@ def test_a_rate_has_counts_and_what_is_usual(evidence_model: str, make_bag) -> N
     suspect: Any = SimpleNamespace(id=laser, reason=reason)
     alarm: Any = SimpleNamespace(begin=3_021_000_000_000, end=3_032_000_000_000)
     counts = against(of, alarm, suspect)
-    assert counts.usual == (36.0, 44.0) and counts.title.startswith('/laser /scan')
+    assert counts.usual == (36.0, 44.0) and counts.caption.startswith('/laser /scan')
     by_time = dict(zip(counts.times, counts.counts))
     assert all(36 <= by_time[time] <= 44 for time in (10.0, 18.0, 36.0))
     assert all(count < 36 for time, count in by_time.items() if 22.5 < time < 29.5)
@@ -73,13 +72,13 @@ def test_a_rate_has_counts_and_what_is_usual(evidence_model: str, make_bag) -> N
 
 def test_lanes_and_score_agree(evidence_model: str, tmp_path: Path) -> None:
     """The report computes no evidence of its own: the largest of a stretch is its score."""
-    found = overview(dead(evidence_model, tmp_path), ['/slam'])
+    found = timeline.timeline(dead(evidence_model, tmp_path), ['/slam'])
     assert found.lanes.names[0] == '/slam' and found.lanes.left_out == 0
-    np.testing.assert_allclose(found.lanes.shares.max(axis=0), -found.timeline.lowest, rtol=1e-6)
+    np.testing.assert_allclose(found.lanes.shares.max(axis=0), -found.lowest, rtol=1e-6)
     assert set(found.lanes.names) == {'/slam', '/laser', '/battery'}
     laser = found.lanes.shares[found.lanes.names.index('/laser')]
-    assert (laser[found.timeline.abnormal] > 1.0).any()
-    assert (found.timeline.abnormal == (found.timeline.lowest < -1.0)).all()
+    assert (laser[found.abnormal] > 1.0).any()
+    assert (found.abnormal == (found.lowest < -1.0)).all()
 
 
 def test_long_recordings_are_drawn_in_stretches_that_lose_no_extreme(
@@ -87,9 +86,9 @@ def test_long_recordings_are_drawn_in_stretches_that_lose_no_extreme(
     of = judged(evidence_model, make_bag('dead.bag', without_laser(3000.0, 120.0)))
     monkeypatch.setattr(timeline, 'MOST_LONG', 50)
     monkeypatch.setattr(timeline, 'MOST_FINE', 160)
-    begins = timeline.cut(of.verdicts, 3)
+    begins = timeline.cut(of)
     assert len(begins) <= 50 + 160 and begins[0] == 0 and (np.diff(begins) > 0).all()
-    drawn = overview(of, []).timeline
+    drawn = timeline.timeline(of)
     assert len(drawn.lowest) == len(begins) < len(of.verdicts.start) / 3
     alarm, = of.verdicts.alarms
     near = (of.verdicts.start[begins] >= alarm.begin - 3 * 10**9) & (
@@ -101,9 +100,11 @@ def test_long_recordings_are_drawn_in_stretches_that_lose_no_extreme(
         assert drawn.lowest[index] == of.verdicts.score[begin:end].min()
         assert drawn.abnormal[index] == of.verdicts.abnormal[begin:end].any()
     # With many components, there are fewer.
-    monkeypatch.setattr(timeline, 'MOST_CELLS', 1000)
-    assert len(timeline.cut(of.verdicts, 20)) <= 52
-    assert len(timeline.cut(of.verdicts, 10_000)) >= 1
+    components = len(of.by.trained.event_types)
+    monkeypatch.setattr(timeline, 'MOST_CELLS', 50 * components)
+    assert len(timeline.cut(of)) <= 52
+    monkeypatch.setattr(timeline, 'MOST_CELLS', components - 1)
+    assert len(timeline.cut(of)) >= 1
 
 
 def test_what_was_not_judged_is_told(evidence_model: str, make_bag) -> None:
@@ -120,26 +121,14 @@ def test_what_was_not_judged_is_told(evidence_model: str, make_bag) -> None:
     assert 'who hears whom' in texts
 
 
-def test_normal_operation_is_called_so(evidence_model: str, make_bag) -> None:
-    found = section(judged(evidence_model, make_bag('n.bag', jittery_robot(7000.0, 30.0, 4))), 'x')
-    assert (found.summary.state, found.summary.headline) == (QUIET, 'Nothing abnormal.')
-    assert found.incidents == [] and found.overview.lanes.names
-
-
-def test_without_limits_nothing_is_judged(model_file: str, make_bag) -> None:
-    found = section(judged(model_file, make_bag('dead.bag', without_laser(3000.0))), 'x')
-    assert found.summary.state == NOT_JUDGED and 'not calibrated' in found.summary.headline
-    assert found.overview.lanes is None and found.unjudged[0].what == 'everything'
-
-
 def test_the_papers_detector_has_suspects_and_no_lanes(evidence_model: str,
                                                        make_bag: Callable[..., str]) -> None:
     bag = make_bag('dead.bag', without_laser(3000.0))
     scores = judged(evidence_model, bag, 'paper').verdicts.score
     threshold = float(np.nanmedian(scores)) / 2
     found = section(judged(evidence_model, bag, 'paper', threshold), 'x')
-    assert found.overview.lanes is None
-    assert found.overview.timeline.limit == 1.0 and found.overview.timeline.unit == threshold
+    assert found.timeline.lanes is None
+    assert found.timeline.limit == 1.0 and found.timeline.unit == threshold
     silent, shown = next(
         (suspect, shown) for each in found.incidents
         for suspect, shown in zip(each.main.named, found.details[each.key].evidence)

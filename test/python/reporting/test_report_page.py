@@ -5,7 +5,7 @@ import json
 import os
 import re
 from pathlib import Path
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable, Dict
 
 import numpy as np
 import pytest
@@ -30,13 +30,6 @@ def data_of(page: str) -> Dict[str, Any]:
     return json.loads(found)
 
 
-def all_figures(page: str) -> List[Dict[str, Any]]:
-    sections = data_of(page)['sections']
-    return [each['overTime'] for each in sections] + [
-        figure for each in sections for incident in each['incidents'].values()
-        for figure in incident['figures'].values()]
-
-
 def test_score_writes_a_report_of_each_recording(evidence_model: str, make_bag, tmp_path: Path,
                                                  capsys) -> None:
     bags = [make_bag('dead.bag', without_laser(3000.0)),
@@ -50,7 +43,7 @@ def test_score_writes_a_report_of_each_recording(evidence_model: str, make_bag, 
     assert not re.search(r'(src|href)="(?!#|data:)', without_plotly), 'it needs no network'
     assert "default-src 'none'" in page
     assert '/laser (/scan) fell silent at 12.0 s, and came back at 20.0 s.' in page
-    assert 'Nothing abnormal.' in page
+    assert 'summary quiet' in page and 'Nothing abnormal.' in page
     # The report and the text agree.
     start, end = re.findall(r'^    ([\d.]+) - ([\d.]+) s', capsys.readouterr().out, re.M)[0]
     assert f'{start} s – {end} s' in page
@@ -70,8 +63,13 @@ def test_every_figure_is_one_that_plotly_knows(evidence_model: str, model_file: 
     save_report(str(report), [section(judged(model, bag, detector, 0.2 if calibrated else None),
                                       'x')])
     page = report.read_text()
-    assert ('not calibrated' in page) != calibrated
-    drawn = all_figures(page)
+    for part in ('Not judged: the model is not calibrated.', 'summary not judged',
+                 '<b>everything</b>: the model has no limits'):
+        assert (part in page) != calibrated
+    assert ('evidence of each component' in page) == (calibrated and detector == 'evidence')
+    shown, = data_of(page)['sections']
+    drawn = [shown['overTime'], *(figure for incident in shown['incidents'].values()
+                                  for figure in incident['figures'].values())]
     assert len(drawn) >= (2 if calibrated else 1)
     for figure in drawn:
         objects.Figure(figure)  # ValueError if it has something unknown
@@ -115,7 +113,7 @@ def test_normal_operation_draws_no_walls(evidence_model: str, make_bag) -> None:
     of = judged(evidence_model, make_bag('n.bag', jittery_robot(7000.0, 60.0, 4)))
     found = section(of, 'x')
     assert np.nanmin(of.verdicts.score) < -0.5
-    drawn = figures.over_time(found.overview, found.incidents)
+    drawn = figures.over_time(found.timeline, found.incidents)
     score = [trace for trace in drawn['data'] if trace.get('yaxis') == 'y2']
     assert {value for trace in score for value in trace['y']} == {-1.0}
 
@@ -155,7 +153,7 @@ def test_a_model_of_many_nodes_has_its_most_unusual_lanes(tmp_path: Path) -> Non
     assert train.main([bag, '-o', model]) == 0
     dead = [m for m in messages if not (m[0] > 1060.0 and m[1] == '/n7')]
     found = section(judged(model, write_bag(tmp_path / 'd.bag', dead)), 'x')
-    lanes = found.overview.lanes
+    lanes = found.timeline.lanes
     assert len(lanes.names) == MOST_LANES and lanes.names[0] == '/n7'
     assert lanes.left_out >= nodes - MOST_LANES
     assert lanes.largest_left_out <= lanes.shares[-1].max()

@@ -23,7 +23,7 @@ class Histogram:
     """Delays in training, and what was seen.
 
     Args:
-        title: what is counted.
+        caption: what is drawn.
         edges: of the bins [s]; one more than bins. The last bin may have no end: it is drawn to
             twice its beginning.
         counts: by bin.
@@ -32,17 +32,12 @@ class Histogram:
         usual: range of most delays in training [s]; None: not known.
     """
 
-    title: str
+    caption: str
     edges: List[float]
     counts: List[int]
     seen: Optional[float]
     seen_text: str
     usual: Optional[Tuple[float, float]]
-
-    @property
-    def caption(self) -> str:
-        """What is drawn."""
-        return f'{self.title}; shaded: what is usual' if self.usual else self.title
 
 
 @dataclass(frozen=True)
@@ -50,24 +45,19 @@ class Counts:
     """Messages of an event type by time.
 
     Args:
-        title: what is counted.
+        caption: what is drawn.
         times: ends of the spans [s] from the recording's first message.
         counts: messages in the span that ends then.
         usual: range of most counts in training.
         begin, end: of the alarm [s].
     """
 
-    title: str
+    caption: str
     times: List[float]
     counts: List[int]
     usual: Tuple[float, float]
     begin: float
     end: float
-
-    @property
-    def caption(self) -> str:
-        """What is drawn."""
-        return f'{self.title}; blue band: what is usual; red: the alarm'
 
 
 Evidence = Union[Histogram, Counts]
@@ -92,11 +82,12 @@ def _delays(judged: Judged, suspect: Suspect) -> Optional[Histogram]:
         return None
     begin, end, _ = bins[-1]
     last = end if math.isfinite(end) else _LAST_OF_OPEN_BIN * begin
-    title = (f'gaps between two {names[suspect.id]}' if other == suspect.id
-             else f'delays from {names[other]} to {names[suspect.id]}')
+    caption = (f'gaps between two {names[suspect.id]}' if other == suspect.id
+               else f'delays from {names[other]} to {names[suspect.id]}')
     usual = (suspect.reason.usual_shortest, suspect.reason.usual_longest)
     known = suspect.reason.unit == 's' and not math.isnan(sum(usual))
-    return Histogram(title, [*(low for low, _, _ in bins), last], [count for _, _, count in bins],
+    return Histogram(f'{caption}; shaded: what is usual' if known else caption,
+                     [*(low for low, _, _ in bins), last], [count for _, _, count in bins],
                      *seen, usual if known else None)
 
 
@@ -133,6 +124,6 @@ def _rate(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Counts]:
     stamps = (judged.edges_of(suspect.id)[1:-1] - judged.recording.origin) / SECOND_NS
     counts = (np.searchsorted(stamps, times, side='right')
               - np.searchsorted(stamps, times - span, side='right'))
-    return Counts(f'{judged.recording.event_types[suspect.id]} in {seconds(span)}',
-                  times.tolist(), counts.tolist(),
+    return Counts(f'{judged.recording.event_types[suspect.id]} in {seconds(span)}; '
+                  'blue band: what is usual; red: the alarm', times.tolist(), counts.tolist(),
                   (max(usual - spread, 0.0), usual + spread), begin, end)

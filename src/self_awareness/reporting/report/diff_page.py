@@ -1,8 +1,6 @@
 """The page of a comparison, in the style of the report."""
 from __future__ import annotations
 
-from typing import Dict, List, Optional
-
 from self_awareness.comparison.changes import DELAY, GAP, Change, Comparison
 from self_awareness.comparison.sides import Side
 from self_awareness.reporting import diff_text
@@ -20,17 +18,13 @@ def save_diff(path: str, comparison: Comparison) -> None:
     Raises:
         OSError: the file cannot be written.
     """
-    drawn: Dict[str, figures.Figure] = {}
-    keys: List[Optional[str]] = []
-    for number, change in enumerate(comparison.changes):
-        wanted = change.what in (GAP, DELAY) and len(drawn) < MOST_FIGURES
-        keys.append(f'delays-{number}' if wanted else None)
-        if wanted:
-            drawn[f'delays-{number}'] = _delays(comparison, change)
+    drawn = [number for number, change in enumerate(comparison.changes)
+             if change.what in (GAP, DELAY)][:MOST_FIGURES]
     save_page(path, 'diff.html', {
         'sections': [],
-        'figures': [dict(figure, id=key) for key, figure in drawn.items()],
-    }, comparison=comparison, changes=list(zip(comparison.changes, keys)), text=diff_text)
+        'figures': [{**_delays(comparison, comparison.changes[number]), 'id': f'delays-{number}'}
+                    for number in drawn],
+    }, comparison=comparison, drawn=drawn, text=diff_text)
 
 
 def _delays(comparison: Comparison, change: Change) -> figures.Figure:

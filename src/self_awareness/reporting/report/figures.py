@@ -13,7 +13,7 @@ import numpy as np
 from self_awareness.reporting.report.against import Counts, Evidence, Histogram, seconds
 from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.intervals import ALARM, Interval
-from self_awareness.reporting.report.timeline import Lanes, Overview, Timeline
+from self_awareness.reporting.report.timeline import SHOWN, Lanes, Timeline
 from self_awareness.reporting.text import percent
 
 Figure = Dict[str, Any]
@@ -23,23 +23,16 @@ Bins = List[Tuple[float, float]]
 """Begin [s] of each bin of delays, and the share of the delays in it [%]."""
 
 RED, AMBER, BLUE, GREY = '#e5484d', '#e08a00', '#4a8fdd', '#8b93a1'
-SHOWN = 4.0
-"""Scores beyond so many limits are drawn at the edge; those within the limits are not drawn.
-
-The evidence of a topic that comes every few seconds grows to nearly its limit again and again: of
-normal operation, that drew walls.
-"""
-
 _LANE_PX = 18
 _HEIGHTS_PX = {'strip': 26, 'score': 190, 'gap': 26, 'bottom': 52}
 _MOST_LABEL = 26
 
 
-def over_time(found: Overview, incidents: Sequence[Incident]) -> Figure:
+def over_time(timeline: Timeline, incidents: Sequence[Incident]) -> Figure:
     """Return alarms, score and lanes over the whole recording, one above the other."""
-    timeline, lanes = found.timeline, found.lanes
+    lanes = timeline.lanes if timeline.lanes is not None and timeline.lanes.names else None
     heights = [_HEIGHTS_PX['strip'], _HEIGHTS_PX['score']]
-    if lanes is not None and lanes.names:
+    if lanes is not None:
         heights.append(_LANE_PX * len(lanes.names))
     total = sum(heights) + _HEIGHTS_PX['gap'] * (len(heights) - 1)
     domains, top = [], float(total)
@@ -60,7 +53,7 @@ def over_time(found: Overview, incidents: Sequence[Incident]) -> Figure:
                    'automargin': True},
         'shapes': _shapes(timeline, [each for _, each in stretches]),
     }
-    if len(heights) == 3 and lanes is not None:
+    if lanes is not None:
         traces.append(_heat(timeline, lanes))
         layout['yaxis3'] = {
             'domain': domains[2], 'autorange': 'reversed', 'fixedrange': True, 'showgrid': False,
@@ -137,10 +130,8 @@ def _counts(shown: Counts) -> Figure:
             'height': 210, 'margin': {'l': 46, 'r': 10, 't': 10, 'b': 44}, 'showlegend': False,
             'xaxis': {'title': {'text': 'time [s]'}, 'zeroline': False},
             'yaxis': {'title': {'text': 'messages'}, 'rangemode': 'tozero', 'fixedrange': True},
-            'shapes': [{'type': 'rect', 'xref': 'paper', 'yref': 'y', 'x0': 0, 'x1': 1,
-                        'y0': low, 'y1': high, 'fillcolor': BLUE, 'opacity': 0.13,
-                        'line': {'width': 0}, 'layer': 'below'},
-                       _band(shown.begin, shown.end, RED, 0.12)]}}
+            'shapes': [{**_band(0, 1, BLUE, 0.13), 'xref': 'paper', 'yref': 'y', 'y0': low,
+                        'y1': high}, _band(shown.begin, shown.end, RED, 0.12)]}}
 
 
 def _strip(stretches: Sequence[Tuple[str, Interval]]) -> Figure:
@@ -164,19 +155,17 @@ def _score(timeline: Timeline) -> List[Figure]:
     reached, words = timeline.lowest, 'lowest score %{customdata}'
     if timeline.limit is not None and timeline.limit < 0:
         reached, words = np.rint(100 * reached / timeline.limit), '%{customdata} % of the limit'
-    traces: List[Figure] = [
+    abnormal = np.flatnonzero(timeline.abnormal)
+    return [
         {'type': 'scatter', 'mode': 'lines', 'x': x, 'y': high, 'yaxis': 'y2',
          'line': {'color': GREY, 'width': 0}, 'hoverinfo': 'skip'},
         {'type': 'scatter', 'mode': 'lines', 'x': x, 'y': low, 'yaxis': 'y2',
          'line': {'color': GREY, 'width': 1}, 'fill': 'tonexty',
          'fillcolor': 'rgba(139,147,161,0.25)', 'customdata': _numbers(reached),
-         'hovertemplate': f'%{{x:.1f}} s: {words}<extra></extra>'}]
-    abnormal = np.flatnonzero(timeline.abnormal)
-    traces.append(
+         'hovertemplate': f'%{{x:.1f}} s: {words}<extra></extra>'},
         {'type': 'scatter', 'mode': 'markers', 'x': [x[index] for index in abnormal],
          'y': [low[index] for index in abnormal], 'yaxis': 'y2',
-         'marker': {'color': RED, 'size': 4}, 'hoverinfo': 'skip'})
-    return traces
+         'marker': {'color': RED, 'size': 4}, 'hoverinfo': 'skip'}]
 
 
 def _score_axis(timeline: Timeline) -> Figure:
@@ -219,6 +208,8 @@ def _heat(timeline: Timeline, lanes: Lanes) -> Figure:
 
 def _clipped(timeline: Timeline, scores: np.ndarray) -> List[Optional[float]]:
     if timeline.limit is not None and timeline.limit < 0:
+        # The evidence of a topic that comes every few seconds grows to nearly its limit again and
+        # again: of normal operation, that drew walls.
         scores = np.clip(scores, -SHOWN, timeline.limit)
     return _numbers(scores)
 

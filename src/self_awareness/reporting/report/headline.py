@@ -28,11 +28,9 @@ def headline(main: Interval, together: Sequence[str], times: int) -> str:
     """
     first = main.first
     silence, back = main.silence, ''
-    is_silence = silence is not None
     if silence is None and first is not None and not first.of.reason.after:
         silence = first.silence
-        is_silence = silence is not None
-        back = _back(main, together) if is_silence else ''
+        back = '' if silence is None else _back(main, together)
     elif silence is not None and silence.back is not None:
         of_hosts = main.of.silent is not None and main.of.silent.hosts
         back = (f'; they came back at {clock(silence.back)}' if of_hosts
@@ -44,14 +42,14 @@ def headline(main: Interval, together: Sequence[str], times: int) -> str:
         components=[] if first is None else [first.component, *together],
         topic='' if first is None else first.what,
         wrong='' if first is None else first.short, reason=_reason(main),
-        is_silence=is_silence, begin=clock(begin) if begin > 0 else '',
+        is_silence=silence is not None, begin=clock(begin) if begin > 0 else '',
         end=clock(main.end) if main.cleared and not main.of.is_told_once else '',
         goes_on='' if main.of.is_told_once else 'the end of the recording',
         back=back, times=times, hosts=main.of.silent.hosts if main.of.silent is not None else [],
         silent=len(main.of.silent.components) if main.of.silent is not None else 0)
     if main.before_end is not None:
         text = f'{text}, {main.before_end:.1f} s before the recording ended'
-    return f'{text[0].upper()}{text[1:]}.'
+    return _as_sentence(text)
 
 
 def of_another(suspect: NamedSuspect) -> str:
@@ -60,18 +58,21 @@ def of_another(suspect: NamedSuspect) -> str:
     silence = suspect.silence
     assert silence is not None
     back = '' if silence.back is None else f', and came back at {clock(silence.back)}'
-    text = sentence(
+    return _as_sentence(sentence(
         kind=suspect.of.reason.kind, components=[suspect.component],
         topic=suspect.what, wrong=suspect.short, reason='', is_silence=True,
         begin=clock(silence.begin) if silence.begin > 0 else '', end='', goes_on='', back=back,
-        times=1, hosts=[], silent=0)
+        times=1, hosts=[], silent=0))
+
+
+def _as_sentence(text: str) -> str:
     return f'{text[0].upper()}{text[1:]}.'
 
 
 def _reason(main: Interval) -> str:
     """Return what is wrong where nobody is to blame, or somebody is there who should not be."""
     if main.of.kind == 'busy machine':
-        return main.busy or 'the machine was busy'
+        return main.of.busy or 'the machine was busy'
     is_there = main.first is not None and main.first.of.reason.topics
     shared = main.of.kind in ('new mode', 'two senders', 'slower clock')
     return main.of.reason if shared or is_there else ''

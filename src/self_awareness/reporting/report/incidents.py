@@ -130,7 +130,7 @@ def _occurrence(number: int, interval: Interval) -> Occurrence:
     return Occurrence(
         number, interval.level == ALARM, nanoseconds(interval.start), nanoseconds(interval.end),
         interval.of.kind, interval.of.culprit,
-        [(each.component, each.abnormal,
+        [(each.component, each.of.abnormal,
           None if each.silence is None else nanoseconds(each.silence.begin),
           each.of.reason.kind, each.of.onset)
          for each in interval.named],
@@ -157,8 +157,8 @@ def _further(intervals: Sequence[Interval], main: Interval, victims: Sequence[st
                and main.first.silence.back is not None)
     for each in main.named:
         stays = each.silence is not None and each.silence.back is None and not main.cleared
-        if each.abnormal and (each.component in others and each.silence is not None
-                              or each.component in victims and stays and is_back):
+        if each.of.abnormal and (each.component in others and each.silence is not None
+                                 or each.component in victims and stays and is_back):
             further.setdefault(each.component, of_another(each))
     by_culprit: Dict[str, List[Interval]] = {}
     for interval in intervals:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Dict, List, Optional
+from typing import List, Optional
 
 import numpy as np
 
@@ -46,9 +46,7 @@ class NamedSuspect:
         component: whose event type it is: a node, or a topic where nodes are not known.
         event_type: its name.
         short: what it does wrong, in a few words.
-        why: the numbers, seen and usual.
         named: when it was named [s] from the recording's first message.
-        abnormal: its evidence alone is beyond its limit.
         silence: its longest one meanwhile; None: it was not silent.
         of: the suspect itself.
     """
@@ -56,9 +54,7 @@ class NamedSuspect:
     component: str
     event_type: str
     short: str
-    why: str
     named: float
-    abnormal: bool
     silence: Optional[Silence]
     of: Suspect
 
@@ -82,7 +78,6 @@ class Interval:
         began: when the trouble began, as far as the first suspect tells; None: it does not.
         reached: how far the score went, in words.
         evidence: channels that speak, in words.
-        busy: that the machine had too much to do, in words; None: it had not.
         silence: of all, or of all on some computers, where nobody was heard; None: somebody was.
         suspects: best first.
         later: suspects that were named later.
@@ -99,7 +94,6 @@ class Interval:
     began: Optional[float]
     reached: str
     evidence: str
-    busy: Optional[str]
     silence: Optional[Silence]
     suspects: List[NamedSuspect]
     later: List[NamedSuspect]
@@ -119,11 +113,9 @@ class Interval:
 
 def components(judged: Judged) -> List[str]:
     """Return the components that alarms and suspicions name, the most important ones first."""
-    named: Dict[str, None] = {}
-    for alarm in [*judged.verdicts.alarms, *judged.verdicts.suspicions]:
-        for suspect in [*alarm.suspects, *alarm.later]:
-            named[suspect.component] = None
-    return list(named)
+    return list(dict.fromkeys(
+        suspect.component for alarm in [*judged.verdicts.alarms, *judged.verdicts.suspicions]
+        for suspect in [*alarm.suspects, *alarm.later]))
 
 
 def intervals(judged: Judged) -> List[Interval]:
@@ -146,7 +138,6 @@ def _interval(judged: Judged, alarm: Alarm) -> Interval:
         None if math.isnan(lasted) else start - lasted,
         of_limit(alarm.lowest_score, judged.by.threshold),
         alarm.evidence or 'what is left of the alarm',
-        alarm.busy,
         _silence_of_all(judged, alarm) if alarm.kind == 'all silent' else None, suspects, later,
         stopped_before_end(judged.recording, alarm))
 
@@ -157,8 +148,7 @@ def _named(judged: Judged, suspect: Suspect, alarm: Alarm) -> NamedSuspect:
         suspect.component, str(judged.recording.event_types[suspect.id]),
         suspect.reason.shortly(silence is not None,
                                silence is not None and silence.back is not None),
-        suspect.reason.words, judged.seconds(suspect.since),
-        suspect.abnormal, silence, suspect)
+        judged.seconds(suspect.since), silence, suspect)
 
 
 def _silence_of(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Silence]:
@@ -185,9 +175,10 @@ def _silence_of(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Sile
 
 def _silence_of_all(judged: Judged, alarm: Alarm) -> Silence:
     """Return the longest time without any event, or any of some computers, as an alarm stood."""
-    edges = (judged.edges_of_components(alarm.silent.components)
-             if alarm.silent is not None and alarm.silent.hosts else judged.edges_of_all())
-    return _longest(judged, edges, alarm.begin, alarm.end)
+    silent = alarm.silent if alarm.silent is not None and alarm.silent.hosts else None
+    kinds = [number for number, kind in enumerate(judged.recording.event_types)
+             if silent is None or (kind.source or kind.scope) in silent.components]
+    return _longest(judged, judged.edges_of(*kinds), alarm.begin, alarm.end)
 
 
 def _longest(judged: Judged, edges: np.ndarray, begin: int, end: int) -> Silence:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Collection, Dict, Optional
+from typing import Dict, Optional, Tuple
 
 import numpy as np
 
@@ -46,29 +46,16 @@ class Judged:
         """Return a stamp [ns] in seconds from the recording's first message."""
         return (stamp - self.recording.origin) / SECOND_NS
 
-    def edges_of(self, kind: int) -> np.ndarray:
-        """Return the recording's first stamp, those of the events of a type, and its end [ns]."""
-        if kind not in self._edges:
+    def edges_of(self, *kinds: int) -> np.ndarray:
+        """Return the recording's first stamp, those of events of some types, and its end [ns]."""
+        if kinds not in self._edges:
             recording = self.recording
-            self._edges[kind] = self._between_edges(recording.stamps[recording.ids == kind])
-        return self._edges[kind]
-
-    def edges_of_all(self) -> np.ndarray:
-        """Return the same of all events."""
-        return self._between_edges(self.recording.stamps)
-
-    def edges_of_components(self, names: Collection[str]) -> np.ndarray:
-        """Return the same of all events of some components."""
-        recording = self.recording
-        theirs = [number for number, kind in enumerate(recording.event_types)
-                  if (kind.source or kind.scope) in names]
-        return self._between_edges(recording.stamps[np.isin(recording.ids, theirs)])
-
-    def _between_edges(self, stamps: np.ndarray) -> np.ndarray:
-        return np.concatenate(([self.recording.origin], stamps, [self.recording.end]))
+            stamps = recording.stamps[np.isin(recording.ids, kinds)]
+            self._edges[kinds] = np.concatenate(([recording.origin], stamps, [recording.end]))
+        return self._edges[kinds]
 
     @cached_property
-    def _edges(self) -> Dict[int, np.ndarray]:
+    def _edges(self) -> Dict[Tuple[int, ...], np.ndarray]:
         return {}
 
     def lanes(self, starts: np.ndarray) -> Optional[EvidenceLanes]:

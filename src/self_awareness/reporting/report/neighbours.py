@@ -4,9 +4,11 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
-from collections import defaultdict, deque
+from collections import Counter, defaultdict, deque
 from dataclasses import dataclass
 from typing import Dict, Iterable, List, Mapping, Sequence, Set, Tuple
+
+from self_awareness.reporting.text import first_lines
 
 MOST_NODES = 14
 """Nodes that are drawn, at most so many: what a phone can show."""
@@ -111,9 +113,7 @@ def _listeners(topics: Mapping[Tuple[str, str], Sequence[str]],
                suspects: Sequence[str]) -> Set[str]:
     """Return who hears nearly everybody, and is no suspect."""
     publishers = {publisher for publisher, _ in topics}
-    heard: Dict[str, int] = defaultdict(int)
-    for _, subscriber in topics:
-        heard[subscriber] += 1
+    heard = Counter(subscriber for _, subscriber in topics)
     return {name for name, number in heard.items()
             if number >= max(_FEWEST_HEARD, _NEARLY_ALL * len(publishers - {name}))
             and name not in suspects}
@@ -153,9 +153,7 @@ def _dot(shown: Neighbourhood) -> str:
     for name, role in shown.roles.items():
         lines.append(f'{numbers[name]} [label={_quoted(_in_lines(name))}, class={role}];')
     for (publisher, subscriber), topics in shown.topics.items():
-        more = len(topics) - MOST_TOPICS
-        label = [_in_lines(topic) for topic in topics[:MOST_TOPICS]]
-        label += [f'and {more} more'] if more > 0 else []
+        label = first_lines([_in_lines(topic) for topic in topics], MOST_TOPICS)
         lines.append(f'{numbers[publisher]} -> {numbers[subscriber]} '
                      f'[label={_quoted(chr(10).join(label))}];')
     return '\n'.join([*lines, '}'])
@@ -174,6 +172,5 @@ def _in_lines(name: str) -> str:
 
 def _quoted(text: str) -> str:
     """Return a text as dot shows it as it is: it has escapes and entities of its own."""
-    for character, escape in (('\\', '\\\\'), ('"', '\\"'), ('&', '&amp;'), ('\n', '\\n')):
-        text = text.replace(character, escape)
-    return f'"{text}"'
+    escapes = str.maketrans({'\\': r'\\', '"': r'\"', '&': '&amp;', '\n': r'\n'})
+    return f'"{text.translate(escapes)}"'

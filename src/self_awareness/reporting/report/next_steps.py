@@ -5,11 +5,11 @@ import math
 import os
 import shlex
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import List, Optional, Sequence, Tuple
 from xml.etree import ElementTree
 
 from self_awareness import last_log_lines
-from self_awareness.reporting.report.incidents import MOST_DETAILS, Incident
+from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import nanoseconds
 
@@ -30,49 +30,39 @@ _LEVELS = {1: 'DEBUG', 2: 'INFO', 4: 'WARN', 8: 'ERROR', 16: 'FATAL'}
 
 
 @dataclass(frozen=True)
-class LogLine:
-    """A line of a node's log; its time in seconds from the recording's first message."""
-
-    time: float
-    level: str
-    text: str
-
-
-@dataclass(frozen=True)
 class NextSteps:
     """What to look at.
 
     Args:
-        log: the last lines of who is to blame on /rosout, up to shortly after the alarm.
+        log: the last lines of who is to blame on /rosout, up to shortly after the alarm: time [s]
+            from the recording's first message, level and text.
         play: command that plays the recording at that time; None: it is no bag.
         layout: a layout for PlotJuggler, whose tab names that time; None likewise.
     """
 
-    log: List[LogLine]
+    log: List[Tuple[float, str, str]]
     play: Optional[str]
     layout: Optional[str]
 
 
-def next_steps(judged: Judged, found: Sequence[Incident]) -> Dict[str, NextSteps]:
-    """Return what to look at of each incident that has details, by its key.
+def next_steps(judged: Judged, found: Sequence[Incident]) -> List[NextSteps]:
+    """Return what to look at of each incident.
 
     Raises:
         BagError: the bag cannot be read any more.
     """
-    detailed = found[:MOST_DETAILS]
     if judged.recording.part.recording is not None:  # of an event log, which holds no messages
-        return {incident.key: NextSteps([], None, None) for incident in detailed}
-    spans = {incident.key: _span(judged, incident) for incident in detailed}
+        return [NextSteps([], None, None) for _ in found]
+    spans = [_span(judged, incident) for incident in found]
     until = [(incident.cause, judged.recording.origin
-              + nanoseconds(min(spans[incident.key][1], incident.main.start + _AFTER_S)))
-             for incident in detailed]
+              + nanoseconds(min(end, incident.main.start + _AFTER_S)))
+             for incident, (_, end) in zip(found, spans)]
     logs = (last_log_lines(judged.recording.part.files, judged.by.trained.encoding, until,
-                           MOST_LINES) if detailed else [])
-    return {incident.key: NextSteps(
-        [LogLine(judged.seconds(stamp), _LEVELS.get(level, str(level)), text)
-         for stamp, level, text in log],
-        _play(judged, *spans[incident.key]), _layout(judged, incident, *spans[incident.key]))
-        for incident, log in zip(detailed, logs)}
+                           MOST_LINES) if found else [])
+    return [NextSteps([(judged.seconds(stamp), _LEVELS.get(level, str(level)), text)
+                       for stamp, level, text in log],
+                      _play(judged, *span), _layout(judged, incident, *span))
+            for incident, span, log in zip(found, spans, logs)]
 
 
 def _span(judged: Judged, incident: Incident) -> Tuple[float, float]:

@@ -36,7 +36,7 @@ def save_report(path: str, sections: Sequence[Section]) -> None:
     """
     save_page(path, 'report.html', {
         'sections': [{
-            'overTime': figures.over_time(section.overview, section.incidents),
+            'overTime': figures.over_time(section.timeline, section.incidents),
             'incidents': {each.key: _drawn(each, section.details.get(each.key))
                           for each in section.incidents},
         } for section in sections]},
@@ -75,12 +75,10 @@ def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> 
 
 
 def _drawn(incident: Incident, details: Optional[Details]) -> Dict[str, Any]:
-    drawn: Dict[str, figures.Figure] = {}
-    for index, evidence in enumerate([] if details is None else details.evidence):
-        if evidence is not None:
-            drawn[f'{incident.key}-delays-{index}'] = figures.evidence(evidence)
+    against = [] if details is None else details.evidence
     return {'range': [round(incident.main.start, 3), round(incident.main.end, 3)],
-            'figures': drawn}
+            'figures': {f'{incident.key}-delays-{index}': figures.evidence(evidence)
+                        for index, evidence in enumerate(against) if evidence is not None}}
 
 
 def _packed(script: str) -> str:

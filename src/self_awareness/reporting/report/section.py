@@ -17,9 +17,9 @@ from self_awareness.reporting.report.intervals import ALARM, SUSPICION, Interval
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.neighbours import Neighbourhood, neighbourhood
 from self_awareness.reporting.report.next_steps import NextSteps, next_steps
-from self_awareness.reporting.report.timeline import Overview, overview, strongest_track
+from self_awareness.reporting.report.timeline import Timeline, timeline
 from self_awareness.reporting.report.unjudged import Unjudged, unjudged
-from self_awareness.reporting.text import percent
+from self_awareness.reporting.text import number_of, percent, seconds_of
 from self_awareness.stamps import SECOND_NS, moment
 
 QUIET, SUSPICIOUS, ALARMED, NOT_JUDGED = 'quiet', 'suspicious', 'alarmed', 'not judged'
@@ -51,13 +51,13 @@ class Details:
         decided: which track was strongest when the main interval was raised, in words; empty: not
             known.
         evidence: against each suspect that the main interval names; None: it cannot be drawn.
-        graph: who publishes to whom near the cause; None: not known.
+        graph: who publishes to whom near the cause; without roles: not known.
         next: what to look at.
     """
 
     decided: str
     evidence: List[Optional[Evidence]]
-    graph: Optional[Neighbourhood]
+    graph: Neighbourhood
     next: NextSteps
 
 
@@ -70,7 +70,7 @@ class Section:
         title: the recording.
         facts: name and value: how long it is and what judged it.
         summary: in words.
-        overview: the score and the evidence over time.
+        timeline: the score and the evidence over time.
         incidents: what happened, the worst first.
         details: of the first MOST_DETAILS incidents, by their keys.
         not_listed: number of further alarms and suspicions.
@@ -84,7 +84,7 @@ class Section:
     title: str
     facts: List[Tuple[str, str]]
     summary: Summary
-    overview: Overview
+    timeline: Timeline
     incidents: List[Incident]
     details: Dict[str, Details]
     not_listed: int
@@ -99,53 +99,52 @@ def section(judged: Judged, key: str) -> Section:
     Raises:
         BagError: the bag cannot be read any more.
     """
-    found = overview(judged, intervals.components(judged))
+    found = timeline(judged, intervals.components(judged))
     listed = intervals.intervals(judged)
     happened = incidents(judged, listed, key)
-    steps = next_steps(judged, happened)
+    detailed = happened[:MOST_DETAILS]
+    trained = judged.by.trained
     shown = {each.key: Details(_decided(judged, found, each.main),
                                [against(judged, each.main.of, suspect.of)
                                 for suspect in each.main.named],
-                               _graph(judged, each), steps[each.key])
-             for each in happened[:MOST_DETAILS]}
+                               neighbourhood(trained.graph, _named(each)), steps)
+             for each, steps in zip(detailed, next_steps(judged, detailed))}
     total = len(judged.verdicts.alarms) + len(judged.verdicts.suspicions)
+    coverage = [] if judged.by.evidence is None else trained.coverage()
     return Section(key, str(judged.recording.part), _facts(judged),
                    _summary(judged, happened), found, happened, shown,
-                   total - len(listed), unjudged(judged), _watched(judged),
-                   coverage_text.unheard_lines(coverage_text.unheard(judged.by.trained.unheard)))
+                   total - len(listed), unjudged(judged),
+                   coverage_text.table(coverage_text.summarise(coverage), trained.fewest_gaps),
+                   coverage_text.unheard_lines(coverage_text.unheard(trained.unheard)))
 
 
-def _graph(judged: Judged, incident: Incident) -> Optional[Neighbourhood]:
-    named = [incident.cause, *(suspect.component for suspect in incident.main.named)]
-    found = neighbourhood(judged.by.trained.graph, [name for name in named if name])
-    return found if found.roles else None
+def _named(incident: Incident) -> List[str]:
+    """Return whom an incident names, the cause first, if there is one."""
+    return [name for name in (incident.cause, *(suspect.component
+                                                for suspect in incident.main.named)) if name]
 
 
-def _decided(judged: Judged, found: Overview, main: Interval) -> str:
-    time = main.start - judged.by.trained.window / 2e9  # in the window that raised it
-    strongest = strongest_track(found, judged, time)
-    if strongest is None:
+def _decided(judged: Judged, found: Timeline, main: Interval) -> str:
+    if found.lanes is None or judged.by.evidence is None:
         return ''
-    track, share = strongest
-    kinds = judged.by.trained.event_types
+    time = main.start - judged.by.trained.window / 2e9  # in the window that raised it
+    at = int(np.searchsorted(found.edges[1:-1], time, side='right'))
+    index = found.lanes.of.tracks[at]
+    if index is None:
+        return ''
+    track, kinds = judged.by.evidence.tracks[index], judged.by.trained.event_types
     name = str(kinds[track.to_id])
     if track.from_id != track.to_id:
         name = f'{kinds[track.from_id]} → {name}'
-    return f'{track.channel} of {name}: {percent(share)} of its limit'
-
-
-def _watched(judged: Judged) -> List[Tuple[str, ...]]:
-    trained = judged.by.trained
-    if judged.by.evidence is None or trained.calibration is None:
-        return []
-    return coverage_text.table(coverage_text.summarise(trained.coverage()), trained.fewest_gaps)
+    share = percent(float(found.lanes.of.strongest[at]))
+    return f'{track.channel} of {name}: {share} of its limit'
 
 
 def _facts(judged: Judged) -> List[Tuple[str, str]]:
     recording, by = judged.recording, judged.by
-    start, end = recording.part.span(recording.origin, recording.end)
     types = int(np.count_nonzero(np.bincount(recording.ids)))
-    facts = [('recorded', f'{moment(start)}, {clock((end - start) / SECOND_NS)}'),
+    facts = [('recorded', f'{moment(recording.recording.start)}, '
+                          f'{clock(seconds_of([recording.recording]))}'),
              ('events', f'{len(recording.stamps):,} of {types:,} event types'),
              ('windows', f'{len(judged.verdicts.start):,} of {by.trained.window / SECOND_NS:g} s'),
              ('model', by.model_name),
@@ -165,32 +164,22 @@ def _summary(judged: Judged, happened: List[Incident]) -> Summary:
         return Summary(QUIET, f'Nothing abnormal, but {missing}.' if missing
                        else 'Nothing abnormal.', [], None)
     worst = happened[0]
-    answers = [('When', _when(worst))]
-    place = place_of(judged, worst)
-    if place:
-        answers.append(('File', place))
-    answers += _blamed(worst)
-    if worst.together:
-        answers.append(('At once', ', '.join(worst.together)))
-    main = worst.main
-    if main.busy is not None:
-        answers.append(('But', main.busy))
-    if worst.waiting:
-        answers.append(('Who waits', f'{worst.waiting}.'))
-    for further in worst.further:
-        answers.append(('And', further))
-    if worst.victims:
-        answers.append(('Victims', ', '.join(worst.victims)))
-    if worst.others:
-        answers.append(('Also named', ', '.join(worst.others) + (
-            '' if judged.by.trained.graph else
-            ' (the model has no graph: nobody knows who is a victim of whom)')))
-    if len(happened) > 1:
-        answers.append(('What else', _others(happened[1:])))
-    if missing:
-        answers.append(('Blind', missing))
-    return Summary(ALARMED if worst.level == ALARM else SUSPICIOUS, worst.headline, answers,
-                   worst.key)
+    others = ', '.join(worst.others)
+    if others and not judged.by.trained.graph:
+        others += ' (the model has no graph: nobody knows who is a victim of whom)'
+    answers = [('When', _when(worst)),
+               ('File', place_of(judged, worst)),
+               *_blamed(worst),
+               ('At once', ', '.join(worst.together)),
+               ('But', worst.main.of.busy or ''),
+               ('Who waits', f'{worst.waiting}.' if worst.waiting else ''),
+               *(('And', further) for further in worst.further),
+               ('Victims', ', '.join(worst.victims)),
+               ('Also named', others),
+               ('What else', _others(happened[1:])),
+               ('Blind', missing)]
+    return Summary(ALARMED if worst.level == ALARM else SUSPICIOUS, worst.headline,
+                   [each for each in answers if each[1]], worst.key)
 
 
 def _blamed(worst: Incident) -> List[Tuple[str, str]]:
@@ -199,7 +188,7 @@ def _blamed(worst: Incident) -> List[Tuple[str, str]]:
         return [('Who', 'no suspect stands out')]
     who = (f'{first.component}, by its {first.event_type}'
            if first.component not in first.event_type.split(' ') else first.event_type)
-    answers = [('Who', who), ('Why', first.why)]
+    answers = [('Who', who), ('Why', first.of.reason.words)]
     if main.began is not None:
         answers.append(('Since', f'{clock(max(main.began, 0.0))}, '
                         f'{main.start - main.began:.2f} s before the {worst.level}'))
@@ -220,9 +209,7 @@ def _others(rest: List[Incident]) -> str:
     for level in (ALARM, SUSPICION):
         of_level = [each for each in rest if each.level == level]
         if of_level:
-            causes = dict.fromkeys(each.cause for each in of_level if each.cause)
-            number = sum(len(each.alarms) for each in of_level)
-            texts.append(f'{number} {level}{"" if number == 1 else "s"} of '
-                         f'{len(of_level)} other cause{"" if len(of_level) == 1 else "s"}'
-                         + (f': {", ".join(causes)}' if causes else ''))
+            causes = ', '.join(dict.fromkeys(each.cause for each in of_level if each.cause))
+            texts.append(f'{number_of(sum(len(each.alarms) for each in of_level), level)} of '
+                         f'{number_of(len(of_level), "other cause")}{causes and f": {causes}"}')
     return '; '.join(texts)

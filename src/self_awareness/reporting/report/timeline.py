@@ -9,7 +9,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EvidenceLanes, Track, Verdicts
+from self_awareness import EvidenceLanes
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import SECOND_NS
 
@@ -21,9 +21,30 @@ MOST_FINE = 1500
 """Windows that are stretches of their own, at most so many."""
 MOST_CELLS = 20_000_000
 """Stretches times components, at most so many: they are kept in memory."""
+SHOWN = 4.0
+"""Scores beyond so many limits are drawn at the edge."""
 
 _BEFORE = 5 * SECOND_NS
 _AFTER = 15 * SECOND_NS
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """The evidence of components over the stretches of a timeline.
+
+    Args:
+        names: of the components, from top to bottom.
+        shares: the largest share of its limit, float [lanes, stretches]; 1 is the limit.
+        left_out: number of components with evidence that have no lane.
+        largest_left_out: the largest share of these.
+        of: the evidence by stretch of all components, and which track was strongest when.
+    """
+
+    names: List[str]
+    shares: np.ndarray
+    left_out: int
+    largest_left_out: float
+    of: EvidenceLanes
 
 
 @dataclass(frozen=True)
@@ -39,6 +60,7 @@ class Timeline:
         unit: the threshold's size; 1: not calibrated.
         limit: the threshold in this unit: -1 of evidence, 1 of the paper's; None: not calibrated.
         settling: start and end [s] of the times in which no alarm is raised.
+        lanes: the evidence of components; None: there is none, or nobody wants it.
     """
 
     edges: np.ndarray
@@ -49,64 +71,19 @@ class Timeline:
     unit: float
     limit: Optional[float]
     settling: List[Tuple[float, float]]
-
-
-@dataclass(frozen=True)
-class Lanes:
-    """The evidence of components over the stretches of a timeline.
-
-    Args:
-        names: of the components, from top to bottom.
-        shares: the largest share of its limit, float [lanes, stretches]; 1 is the limit.
-        left_out: number of components with evidence that have no lane.
-        largest_left_out: the largest share of these.
-    """
-
-    names: List[str]
-    shares: np.ndarray
-    left_out: int
-    largest_left_out: float
-
-
-@dataclass(frozen=True)
-class Overview:
-    """What is drawn over time, and what was strongest when.
-
-    Args:
-        timeline: the score.
-        lanes: None: there is no evidence of components.
-        evidence: by stretch, from which the lanes come; None likewise.
-    """
-
-    timeline: Timeline
     lanes: Optional[Lanes]
-    evidence: Optional[EvidenceLanes]
 
 
-def overview(judged: Judged, first: Sequence[str]) -> Overview:
-    """Return what is drawn of a recording over time.
-
-    Args:
-        judged: the recording, with at least one window.
-        first: components whose lanes come first, the most important one first.
-    """
-    verdicts = judged.verdicts
-    begins = _begins(judged)
-    found = judged.lanes(verdicts.start[begins])
-    return Overview(timeline(judged), None if found is None else select_lanes(found, first), found)
-
-
-def cut(verdicts: Verdicts, components: int) -> np.ndarray:
-    """Return the index of the first window of each stretch, in order.
+def cut(judged: Judged) -> np.ndarray:
+    """Return the index of the first window of each stretch, in order; there is one at least.
 
     Near the beginning of an alarm, and if there is room of a suspicion, each window is one.
-
-    Args:
-        verdicts: at least one window.
-        components: of the model.
     """
+    verdicts = judged.verdicts
     windows = len(verdicts.start)
-    most = max(1, min(MOST_LONG + MOST_FINE, MOST_CELLS // max(components, 1)))
+    # There are no more components than event types.
+    components = max(len(judged.by.trained.event_types), 1)
+    most = max(1, min(MOST_LONG + MOST_FINE, MOST_CELLS // components))
     long = min(MOST_LONG, most)
     step = -(-windows // long)
     first = np.zeros(windows, dtype=bool)
@@ -124,17 +101,7 @@ def cut(verdicts: Verdicts, components: int) -> np.ndarray:
     return np.flatnonzero(first)
 
 
-def strongest_track(found: Overview, judged: Judged, time: float) -> Optional[Tuple[Track, float]]:
-    """Return the track that has the largest share of its limit at a time [s], and the share."""
-    if found.evidence is None or judged.by.evidence is None:
-        return None
-    at = int(np.searchsorted(found.timeline.edges[1:-1], time, side='right'))
-    index = found.evidence.tracks[at]
-    return index if index is None else (judged.by.evidence.tracks[index],
-                                        float(found.evidence.strongest[at]))
-
-
-def select_lanes(found: EvidenceLanes, first: Sequence[str]) -> Lanes:
+def _select_lanes(found: EvidenceLanes, first: Sequence[str]) -> Lanes:
     """Return the lanes of the named components, and of those with the most evidence."""
     shares, names = found.shares, found.components
     largest = shares.max(axis=1, initial=0.0)
@@ -143,17 +110,18 @@ def select_lanes(found: EvidenceLanes, first: Sequence[str]) -> Lanes:
                    key=lambda lane: (rank.get(names[lane], len(rank)), -largest[lane]))
     kept, rest = order[:MOST_LANES], order[MOST_LANES:]
     return Lanes([names[lane] for lane in kept], shares[kept], len(rest),
-                 float(largest[rest].max()) if rest else 0.0)
+                 float(largest[rest].max()) if rest else 0.0, found)
 
 
-def _begins(judged: Judged) -> np.ndarray:
-    # There are no more components than event types.
-    return cut(judged.verdicts, len(judged.by.trained.event_types))
+def timeline(judged: Judged, first: Optional[Sequence[str]] = None) -> Timeline:
+    """Return the score of a recording, with at least one window, by stretch.
 
-
-def timeline(judged: Judged) -> Timeline:
-    """Return the score of a recording, with at least one window, by stretch."""
-    verdicts, window, begins = judged.verdicts, judged.by.trained.window, _begins(judged)
+    Args:
+        judged: the recording.
+        first: components whose lanes come first, the most important one first; None: no lanes.
+    """
+    verdicts, window, begins = judged.verdicts, judged.by.trained.window, cut(judged)
+    found = None if first is None else judged.lanes(verdicts.start[begins])
     threshold = judged.by.threshold
     unit = abs(threshold) if threshold else 1.0
     starts = (np.append(verdicts.start, verdicts.start[-1] + window)
@@ -170,4 +138,5 @@ def timeline(judged: Judged) -> Timeline:
         silent=np.logical_or.reduceat(np.isnan(verdicts.score), begins),
         unit=unit,
         limit=None if threshold is None else threshold / unit,
-        settling=[(float(starts[a]), float(starts[b])) for a, b in steps.reshape(-1, 2)])
+        settling=[(float(starts[a]), float(starts[b])) for a, b in steps.reshape(-1, 2)],
+        lanes=None if found is None else _select_lanes(found, first or []))

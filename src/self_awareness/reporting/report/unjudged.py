@@ -8,6 +8,7 @@ from typing import List, Sequence
 
 from self_awareness.recordings import unknown
 from self_awareness.reporting.report.judged import Judged
+from self_awareness.reporting.text import number_of
 from self_awareness.stamps import SECOND_NS
 
 MOST_NAMES = 30
@@ -56,8 +57,8 @@ def unjudged(judged: Judged) -> List[Unjudged]:
 def _listed(what: str, why: str, names: Sequence[str]) -> List[Unjudged]:
     if not names:
         return []
-    text = f'{len(names)} event type{"" if len(names) == 1 else "s"} {what}'
-    return [Unjudged(text, why, list(names[:MOST_NAMES]), max(len(names) - MOST_NAMES, 0))]
+    return [Unjudged(f'{number_of(len(names), "event type")} {what}', why,
+                     list(names[:MOST_NAMES]), max(len(names) - MOST_NAMES, 0))]
 
 
 def _unknown(judged: Judged) -> List[Unjudged]:
