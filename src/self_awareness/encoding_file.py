@@ -36,10 +36,7 @@ def load(path: str) -> EncodingRules:
             rules.type_fields, rules.classes = _fields(section, data['type_fields'])
         if 'mode' in section:
             rules.mode = _mode(section, data['mode'])
-            try:
-                rules.validate()
-            except ValueError as error:
-                section.fail('mode', str(error))
+            _validate(section, 'mode', rules)
     return rules
 
 
@@ -96,21 +93,21 @@ def _renames(section: Section, value: Any) -> List[Tuple[str, str]]:
                                f'name that takes its place, found {shown(value)}')
     probe = EncodingRules()
     probe.rename = [(pattern, name) for pattern, name in value]
-    try:
-        probe.validate()
-    except ValueError as error:
-        section.fail('rename', str(error))
+    _validate(section, 'rename', probe)
     return probe.rename
 
 
 def _patterns(section: Section, key: str, value: Any) -> Any:
     if not isinstance(value, list) or not all(isinstance(pattern, str) for pattern in value):
         section.fail(key, f'expected a list of regular expressions, found {shown(value)}')
-    for pattern in value:
-        probe = EncodingRules()
-        probe.include_topics = [pattern]
-        try:
-            probe.validate()
-        except ValueError as error:
-            section.fail(key, str(error))
+    probe = EncodingRules()
+    probe.include_topics = value
+    _validate(section, key, probe)
     return value
+
+
+def _validate(section: Section, key: str, rules: EncodingRules) -> None:
+    try:
+        rules.validate()
+    except ValueError as error:
+        section.fail(key, str(error))

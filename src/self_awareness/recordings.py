@@ -173,24 +173,26 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
     Raises:
         BagError: the bag cannot be read.
         ValueError: the time range is empty, the bag does not name the senders that the model tells
-            apart, no message of it is an event, or the model knows none of its event types.
+            apart, no message of it is an event, or the model knows none of its event types; the
+            message names the part.
     """
+    try:
+        return _read(model, part)
+    except ValueError as error:
+        raise ValueError(f'{part}: {error}') from error
+
+
+def _read(model: TrainedModel, part: BagPart) -> RecordingEvents:
     with progress.messages(os.path.basename(part.path)) as update:
-        try:
-            events = read_events(part.files, model.encoding, model.event_types, part.start,
-                                 part.end, update, part.recording)
-        except ValueError as error:
-            raise ValueError(f'{part}: {error}') from error
+        events = read_events(part.files, model.encoding, model.event_types, part.start, part.end,
+                             update, part.recording)
     played = {kind for _, _, kinds in events.senders for kind in kinds}
     recording = replace(
         RecordingEvents.of(part, events, model.encoding),
         event_types=[*events.event_types, *sorted(played, key=str)],
         missing=missing_subscriptions(events.summary, model.encoding, model.subscriptions))
     _check(model, recording, events.summary.has_sources)
-    try:
-        check_windows(events.stamps, model.window)
-    except ValueError as error:
-        raise ValueError(f'{part}: {error}') from error
+    check_windows(events.stamps, model.window)
     return recording
 
 
@@ -218,17 +220,16 @@ def few_known(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:
     known, heard = _known(model, recording)
     if known >= LEAST_KNOWN * heard:
         return None
-    return (f'{recording.part}: the model knows {known} of the {heard} event types of this '
-            'recording, and says nothing of the others: is it of this robot?')
+    return (f'the model knows {known} of the {heard} event types of this recording, and says '
+            'nothing of the others: is it of this robot?')
 
 
 def clock_steps(recording: RecordingEvents) -> Optional[str]:
     """Return what to tell of a recording in which the clock was set."""
     steps = recording.steps_of_the_clock
-    if not steps:
-        return None
-    return (f'{recording.part}: the clock was set {in_words(steps)}, but the nodes went on '
-            'without a pause. The recording is cut there; nothing counts as late')
+    return None if not steps else (
+        f'the clock was set {in_words(steps)}, but the nodes went on without a pause. The '
+        'recording is cut there; nothing counts as late')
 
 
 def in_words(steps: Sequence[ClockStep]) -> str:
@@ -253,11 +254,9 @@ def merged_senders(model: TrainedModel, recording: RecordingEvents) -> Optional[
 
     merged = [f'{topic} (here {min(heard[topic])} only, in the model {len(known[topic])} senders)'
               for topic in sorted(heard) if are_merged(topic)]
-    if not merged:
-        return None
-    return (f'{recording.part}: this bag names only one sender for each topic, as copies do that '
-            f'rosbag filter, compress or decompress made: '
-            f'{", ".join(merged)}; use the bag as it was recorded')
+    return None if not merged else (
+        'this bag names only one sender for each topic, as copies do that rosbag filter, compress '
+        f'or decompress made: {", ".join(merged)}; use the bag as it was recorded')
 
 
 def _senders(event_types: Iterable[EventType]) -> Dict[str, Set[str]]:
@@ -298,24 +297,19 @@ def check_kind(path: str) -> None:
 
 
 def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -> None:
-    part = recording.part
     if not has_sources or len(recording.stamps) == 0:
-        try:
-            check_kind(part.path)
-        except ValueError as error:
-            raise ValueError(f'{part}: {error}') from error
+        check_kind(recording.part.path)
     if model.encoding.source == 'callerid' and not has_sources:
-        raise ValueError(f'{part}: the model was trained with another encoding: it tells sources '
-                         'apart, and no connection of this bag names its sender; train a model '
-                         'with "source: none" (train --encoding)')
+        raise ValueError('the model was trained with another encoding: it tells sources apart, '
+                         'and no connection of this bag names its sender; train a model with '
+                         '"source: none" (train --encoding)')
     if len(recording.stamps) == 0:
-        raise ValueError(f'{part}: no message is an event by the encoding of the model (info '
-                         'shows it); a recording of "rosbag play" needs a model with '
-                         '"source: none"')
+        raise ValueError('no message is an event by the encoding of the model (info shows it); a '
+                         'recording of "rosbag play" needs a model with "source: none"')
     known, heard = _known(model, recording)
     if known == 0:
-        raise ValueError(f'{part}: the model knows none of the {heard} event types of this '
-                         'recording: it was trained with another encoding or on another robot')
+        raise ValueError(f'the model knows none of the {heard} event types of this recording: it '
+                         'was trained with another encoding or on another robot')
 
 
 class Unknown(NamedTuple):

@@ -7,11 +7,12 @@ from typing import Callable, Iterable, Tuple
 import pytest
 import rosbag
 import rospy
+from conftest import trained
 from rosbag import rosbag_main
 from std_msgs.msg import String
 
 from self_awareness import summarise_bag
-from self_awareness.commands import calibrate, score, train
+from self_awareness.commands import calibrate, score
 
 _PERIODS_S = {('/arm', '/joints'): 0.1, ('/hand', '/joints'): 0.11, ('/hand', '/touch'): 0.2}
 
@@ -61,9 +62,8 @@ def recorded(tmp_path: Path) -> str:
 @pytest.fixture
 def model(recorded: str, tmp_path: Path) -> str:
     """A model of it, which knows both senders of a topic."""
-    path = str(tmp_path / 'm')
-    assert train.main([recorded, '-o', path]) == 0
-    return path
+    trained([recorded], tmp_path / 'm')
+    return str(tmp_path / 'm')
 
 
 @pytest.mark.parametrize('copy', [_filtered, _compressed])
@@ -78,15 +78,15 @@ def test_copies_of_recordings_are_told_from_recordings(recorded: str,
 
 def test_training_says_so(recorded: str, tmp_path: Path, capsys) -> None:
     copy = _filtered(recorded)
-    assert train.main([recorded, '-o', str(tmp_path / 'm')]) == 0
+    trained([recorded], tmp_path / 'm')
     assert 'warning' not in capsys.readouterr().out
-    assert train.main([copy, '-o', str(tmp_path / 'm')]) == 0
+    trained([copy], tmp_path / 'm')
     line, = [line for line in capsys.readouterr().out.splitlines() if 'warning' in line]
     assert line.startswith(f'{copy}: warning: a copy that rosbag filter, compress or decompress ')
     assert 'Use the bag as it was recorded' in line
     encoding = tmp_path / 'encoding.yaml'
     encoding.write_text('source: none\n')
-    assert train.main([copy, '--encoding', str(encoding), '-o', str(tmp_path / 'm')]) == 0
+    trained([copy], tmp_path / 'm', '--encoding', str(encoding))
     assert 'warning' not in capsys.readouterr().out, 'senders do not count'
 
 

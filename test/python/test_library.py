@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import jittery_robot
+from conftest import jittery_robot, write_bag
 
 import self_awareness as sa
 from self_awareness import library
@@ -22,7 +22,6 @@ ROOT = Path(__file__).resolve().parents[2]
 @pytest.fixture(scope='module')
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The recordings that the documentation names: the laser of crash.bag is dead from 12 s on."""
-    from conftest import write_bag
     made = tmp_path_factory.mktemp('library')
     for day, name in enumerate(['monday', 'tuesday', 'wednesday', 'thursday']):
         write_bag(made / f'{name}.bag', jittery_robot(1000.0 * (day + 1), 120.0, day))

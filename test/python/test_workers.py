@@ -44,10 +44,6 @@ def fail_at_two(_: None, number: int) -> int:
     return number
 
 
-def die(_: None, __: int) -> None:
-    os.kill(os.getpid(), signal.SIGKILL)
-
-
 def begin_and_hang(folder: Path, number: int) -> None:
     (folder / f'{number}').write_text(str(os.getpid()))
     signal.pause()
@@ -84,11 +80,6 @@ def test_work_begins_only_a_little_ahead(tmp_path: Path) -> None:
 def test_batches_are_few_and_not_long(tasks: int, processes: int, batches: int) -> None:
     assert Processes(processes).batches(tasks) == batches
     assert InProcess().batches(tasks) == tasks
-
-
-def test_a_process_that_is_killed_is_told(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match='^0: a process .* was killed'):
-        list(Processes(2).map(die, None, range(4), 'test'))
 
 
 def test_a_process_that_is_killed_is_replaced(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 
 from self_awareness import Alarm, EventType
 from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.reporting.text import first_lines, first_of
 from self_awareness.stamps import SECOND_NS
 
 START_UP_S = 30.0
@@ -166,17 +167,13 @@ def lines(recordings: Sequence[Tuple[BagPart, Silences]], start: str, end: str) 
         for does, cut_s, option in (
                 ('starts after the recording does', [cut.head_s for _, cut in heard], start),
                 ('ends before the recording does', [cut.tail_s for _, cut in heard], end)):
-            named = [(length_s, str(part)) for length_s, (part, _) in zip(cut_s, heard)
+            named = [f'{part} by {length_s:.1f} s' for length_s, (part, _) in zip(cut_s, heard)
                      if is_longer(length_s, longest_s)]
             if named:
-                parts = ', '.join(f'{part} by {length_s:.1f} s'
-                                  for length_s, part in named[:_MOST_NAMED])
-                more = (f' and {len(named) - _MOST_NAMED} more'
-                        if len(named) > _MOST_NAMED else '')
-                found.append(f'{component} {does} in {len(named)} of {len(heard)}: {parts}{more}. '
-                             f'That counts as no pause ({option} leaves it out)')
-    rest = len(found) - _MOST_LINES
-    return found[:_MOST_LINES] + ([f'and {rest} more'] if rest > 0 else [])
+                found.append(f'{component} {does} in {len(named)} of {len(heard)}: '
+                             f'{first_of(named, _MOST_NAMED)}. That counts as no pause ({option} '
+                             'leaves it out)')
+    return first_lines(found, _MOST_LINES)
 
 
 def stopped_before_end(recording: RecordingEvents, alarm: Alarm) -> Optional[float]:

@@ -35,14 +35,14 @@ class Run:
 
     Args:
         source: the recording.
-        fault: empty for normal operation, RECORDED, or the fault injected.
+        fault: empty: normal operation; RECORDED, or the fault injected.
         onset: when the fault begins [ns]; not for normal operation.
         relief: when it ends [ns]; not for normal operation.
         injected: the fault injected; None: the events are those of the source.
     """
 
     source: RecordingEvents
-    fault: str
+    fault: str = ''
     onset: int = 0
     relief: int = 0
     injected: Optional[InjectedFault] = None
@@ -80,11 +80,6 @@ class JudgedRun:
     def stood_before(self) -> bool:
         """Whether a false alarm stood when the fault began, and hides that of the fault."""
         return any(alarm.begin <= self.run.onset < alarm.end for alarm in self.verdicts.alarms)
-
-
-def normal_run(recording: RecordingEvents) -> Run:
-    """Return a run of normal operation."""
-    return Run(recording, '')
 
 
 def recorded_fault(whole: RecordingEvents, window: int) -> Run:

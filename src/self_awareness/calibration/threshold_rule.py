@@ -46,20 +46,17 @@ class ThresholdRule:
                              '(--faulty), let some be made (--inject), or choose by normal '
                              'windows alone (--cutoff fpr=RATE)')
         if self.method == 'fpr':
-            return self._level(roc)
+            point = roc.level(self.rate)
+            # Silence scores 0, and no score is lower: nothing would be below such a threshold.
+            if point.cutoff <= 0.0:
+                raise ValueError(f'--cutoff {self} finds no threshold: a larger share of the '
+                                 'normal windows than this scores 0, as silence does, and none '
+                                 'scores less; allow a higher rate')
+            return point
         point = roc.youden() if self.method == 'youden' else roc.closest()
         if not math.isfinite(point.cutoff):
             raise ValueError(f'--cutoff {self} finds no threshold: the scores of abnormal windows '
                              f'are not below the normal ones (AUC {roc.auc:.3f}); these faults '
                              'cannot be told by the score, so leave them out or choose by normal '
                              'windows alone (--cutoff fpr=RATE)')
-        return point
-
-    def _level(self, roc: Roc) -> RocPoint:
-        point = roc.level(self.rate)
-        # Silence scores 0, and no score is lower: nothing would ever be below such a threshold.
-        if point.cutoff <= 0.0:
-            raise ValueError(f'--cutoff {self} finds no threshold: a larger share of the normal '
-                             'windows than this scores 0, as silence does, and none scores less; '
-                             'allow a higher rate')
         return point

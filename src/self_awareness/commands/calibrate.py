@@ -4,8 +4,9 @@ from __future__ import annotations
 import argparse
 import os
 import time
+from dataclasses import replace
 from statistics import median
-from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -19,12 +20,13 @@ from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_
                                                 fault_results, labelled)
 from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, Injections,
                                              JudgedRun, Run, check_unseen, injections, judge_runs,
-                                             normal_run, recorded_fault)
+                                             recorded_fault)
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, load_model, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, save_table
 from self_awareness.parts import BagPart, Named, by_folder, look
+from self_awareness.recordings import RecordingEvents
 from self_awareness.reporting import coverage_text, evidence_report, verdict
 from self_awareness.reporting.plots import save_roc
 from self_awareness.reporting.text import cell, duration, rounded
@@ -81,12 +83,10 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     accepted = _accepted(arguments, trained)
     faults = [of_known_source(fault, trained.event_types) for fault in arguments.inject]
 
-    normal = cli.read_recordings('calibrate', trained, normal_bags, arguments.skip_bad,
-                                 lambda part: part)
-    faulty = cli.read_recordings('calibrate', trained, faulty_bags, arguments.skip_bad,
-                                 BagPart.whole)
+    normal = _read(trained, normal_bags, arguments.skip_bad, lambda part: part)
+    faulty = _read(trained, faulty_bags, arguments.skip_bad, BagPart.whole)
     check_unseen(trained, normal + faulty)
-    normal_runs = [normal_run(recording) for recording in normal]
+    normal_runs = [Run(recording) for recording in normal]
     recorded = [recorded_fault(recording, trained.window) for recording in faulty]
 
     if arguments.detector == 'evidence':
@@ -126,13 +126,21 @@ def _calibrate(arguments: argparse.Namespace) -> None:
 
 def _named(arguments: argparse.Namespace) -> List[Named]:
     """Return the normal and the faulty recordings."""
-    both = [look(bags) for bags in (arguments.normal, arguments.faulty)]
-    cli.say_found(Named(*([each for named in both for each in getattr(named, field)]
-                          for field in ('parts', 'bad', 'told'))), arguments.skip_bad)
+    normal, faulty = look(arguments.normal), look(arguments.faulty)
+    cli.say_found(Named(normal.parts + faulty.parts, normal.bad + faulty.bad,
+                        normal.told + faulty.told), arguments.skip_bad)
     if arguments.robots_by_folder:
-        for named in both:
-            named.parts = by_folder(named.parts)
-    return both
+        normal.parts, faulty.parts = by_folder(normal.parts), by_folder(faulty.parts)
+    return [normal, faulty]
+
+
+def _read(trained: TrainedModel, named: Named, skip_bad: bool,
+          what: Callable[[BagPart], BagPart]) -> List[RecordingEvents]:
+    """Return the events of what is asked for of each recording, as those of the part named."""
+    events = list(named.each(lambda part: replace(
+        cli.read_recording('calibrate', trained, what(part)), part=part)))
+    named.check(skip_bad and bool(events))
+    return events
 
 
 def _goes_elsewhere(arguments: argparse.Namespace) -> bool:
@@ -149,8 +157,7 @@ def _accepted(arguments: argparse.Namespace, trained: TrainedModel) -> List[Acce
 def _keep_accepted(arguments: argparse.Namespace, trained: TrainedModel) -> None:
     if _goes_elsewhere(arguments):  # else the file is there
         accepted = accepted_file.of_either(arguments.model, arguments.output)
-        for line in accepted_file.keep_what_is_left(accepted, trained, arguments.output):
-            print(line)
+        cli.print_lines(accepted_file.keep_what_is_left(accepted, trained, arguments.output))
 
 
 def _say_holes(trained: TrainedModel, silences: Sequence[Tuple[BagPart, Silences]],
@@ -200,10 +207,9 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
     faulty = judge_runs(judge, trained.window, [*recorded, *injected.runs])
     normal_scores = _normal_scores(normal, faulty, parameters)
     roc = Roc(normal_scores, labelled(faulty, ABNORMAL))
-    measured = _Measured(roc.at(EVIDENCE_THRESHOLD), roc, normal, faulty,
-                         fault_results(normal_scores, faulty, EVIDENCE_THRESHOLD),
-                         false_alarms(normal, trained.window), by_budget, injected)
-    return measured
+    return _Measured(roc.at(EVIDENCE_THRESHOLD), roc, normal, faulty,
+                     fault_results(normal_scores, faulty, EVIDENCE_THRESHOLD),
+                     false_alarms(normal, trained.window), by_budget, injected)
 
 
 def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutoff: ThresholdRule,

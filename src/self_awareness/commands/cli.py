@@ -8,7 +8,6 @@ import os
 import re
 import signal
 import sys
-from dataclasses import replace
 from types import FrameType
 from typing import Any, Callable, Iterable, List, NoReturn, Optional, Sequence, TypeVar
 
@@ -16,7 +15,7 @@ import rosgraph
 
 from self_awareness import (SHORTEST_WINDOW, VERSION, BagError, DetectorParameters, ModelFileError,
                             TrainedModel, UnknownEvents, printable, recordings)
-from self_awareness.parts import BadRecordingsError, BagPart, Named, look
+from self_awareness.parts import BadRecordingsError, BagPart, Named
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
@@ -273,18 +272,6 @@ def add_skip_bad(parser: argparse.ArgumentParser) -> None:
                              'this option, all of them are named and the exit code is 1')
 
 
-def look_at(bags: Iterable[BagPart], skip_bad: bool) -> Named:
-    """Look at the recordings of a command line, of which one result is made; say what they are.
-
-    Raises:
-        BadRecordingsError: one cannot be used and is not to be skipped, or none can.
-        ValueError: as look().
-    """
-    named = look(bags)
-    say_found(named, skip_bad)
-    return named
-
-
 def say_found(named: Named, skip_bad: bool) -> None:
     """Say before the work which bags are one recording, and which ones are skipped.
 
@@ -323,26 +310,6 @@ def end_with(program: str, named: Named, skip_bad: bool) -> None:
     say_skipped(program, named.bad)
 
 
-def read_recordings(program: str, model: TrainedModel, named: Named, skip_bad: bool,
-                    read: Callable[[BagPart], BagPart]) -> List[RecordingEvents]:
-    """Return the events of all recordings; those that turn out to be bad are added to these.
-
-    Args:
-        program: that warns.
-        model: by the encoding of which messages are events.
-        named: the recordings.
-        skip_bad: leave out those that cannot be used.
-        read: what of each is read; the events are those of the part that was named.
-
-    Raises:
-        BadRecordingsError: one cannot be used and is not to be skipped, or none can.
-    """
-    events = list(named.each(
-        lambda part: replace(read_recording(program, model, read(part)), part=part)))
-    named.check(skip_bad and bool(events))
-    return events
-
-
 def read_recording(program: str, model: TrainedModel, part: BagPart) -> RecordingEvents:
     """Return the events of a bag, or of a part of it.
 
@@ -352,12 +319,11 @@ def read_recording(program: str, model: TrainedModel, part: BagPart) -> Recordin
         BagError, ValueError: as recordings.read().
     """
     recording = recordings.read(model, part)
-    for warning in (recordings.clock_steps(recording), recordings.merged_senders(model, recording),
-                    recordings.few_known(model, recording)):
-        if warning is not None:
-            warn(program, warning)
-    for reason in recording.left_out:
-        warn(program, f'{part}: {reason}; it is left out')
+    told = (recordings.clock_steps(recording), recordings.merged_senders(model, recording),
+            recordings.few_known(model, recording),
+            *(f'{reason}; it is left out' for reason in recording.left_out))
+    for warning in filter(None, told):
+        warn(program, f'{part}: {warning}')
     return recording
 
 

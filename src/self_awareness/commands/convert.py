@@ -9,7 +9,7 @@ from self_awareness import (BagSummary, EncodingRules, EventLogWriter, encoding_
                             summarise_bag)
 from self_awareness.commands import cli
 from self_awareness.output_files import EVENT_LOG, check_outputs, replacing
-from self_awareness.parts import BagPart
+from self_awareness.parts import BagPart, look
 from self_awareness.training.robot_graph import RobotGraph
 
 _EPILOG = """\
@@ -29,7 +29,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _convert(arguments: argparse.Namespace) -> None:
-    named = cli.look_at(map(BagPart, arguments.bags), arguments.skip_bad)
+    named = look(map(BagPart, arguments.bags))
+    cli.say_found(named, arguments.skip_bad)
     for part in named.parts:
         if part.recording is not None:
             raise ValueError(f'{part.path}: is an event log already')

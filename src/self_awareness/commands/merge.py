@@ -57,15 +57,10 @@ def _merge(arguments: argparse.Namespace) -> None:
 
 
 def _load(path: str, known: DistinctRecordings, renames: Renames) -> TrainedModel:
-    """Load a model whose recordings are in none of those before.
-
-    Args:
-        path: of the model.
-        known: recordings of those before.
-        renames: rules that all models are to have.
+    """Load a model with the rules that all models are to have, and add its recordings.
 
     Raises:
-        ValueError: one of its recordings is; or two of its event types become one by the rules.
+        ValueError: one of them is known already, or two of its event types become one.
     """
     model = TrainedModel.load(path)
     try:

@@ -16,7 +16,7 @@ from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import MODEL, check_outputs
-from self_awareness.parts import BagPart, by_folder
+from self_awareness.parts import BagPart, by_folder, look
 from self_awareness.reporting import model_text, verdict
 from self_awareness.reporting.model_summary import summarise
 from self_awareness.stamps import SECOND_NS
@@ -49,7 +49,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _train(arguments: argparse.Namespace) -> None:
-    named = cli.look_at(arguments.bags, arguments.skip_bad)
+    named = look(arguments.bags)
+    cli.say_found(named, arguments.skip_bad)
     parts = _parts(arguments, named.parts)
     bags = [file for part in parts for file in part.files]
     check_outputs([(arguments.output, MODEL)], bags + [arguments.encoding])
@@ -78,7 +79,8 @@ def _train(arguments: argparse.Namespace) -> None:
         model.hosts = graph.hosts_of_sources(model.encoding)
         model.unheard = graph.unheard(model.encoding)
         try:
-            _find_limits(trained, workers)
+            if model.detectors != PAPER:
+                many_bags.preliminary_limits(trained, workers)
         except TooLittleError as error:
             cli.warn('train', f'no limits: {error}')
         except (BagError, ValueError) as error:  # the counts are not lost
@@ -135,21 +137,10 @@ def _live_graph(base: Optional[TrainedModel]) -> RobotGraph:
     return graph
 
 
-def _find_limits(trained: Trained, workers: Workers) -> None:
-    """Give the model preliminary limits, unless it is for another detector.
-
-    Raises:
-        BagError: a recording cannot be read any more.
-        TooLittleError: the recordings are too short.
-    """
-    if trained.model.detectors != PAPER:
-        many_bags.preliminary_limits(trained, workers)
-
-
 def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Counting:
     if base is not None:
         for option in _OF_THE_MODEL:
-            if getattr(arguments, option.replace('-', '_')) is not None:
+            if getattr(arguments, option) is not None:
                 raise ValueError(f'--{option}: leave it out; with --add-to, it is that of '
                                  f'{arguments.add_to}')
         return Counting.of(base)
@@ -180,7 +171,8 @@ def _parts(arguments: argparse.Namespace, named: Sequence[BagPart]) -> List[BagP
 def _workers(arguments: argparse.Namespace, recordings: int) -> Workers:
     if arguments.scheduler is not None:
         return Cluster(arguments.scheduler)
-    return on_this_machine(min(arguments.jobs or _cores(), recordings))
+    cores = len(os.sched_getaffinity(0))
+    return on_this_machine(min(arguments.jobs or cores, recordings))
 
 
 def _check_distinct(parts: Sequence[BagPart]) -> None:
@@ -192,10 +184,6 @@ def _check_distinct(parts: Sequence[BagPart]) -> None:
                 if part.meets(other):
                     raise ValueError(f'{part}: the same recording as {other}; name it once')
             others.append(part)
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0))
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -135,13 +135,7 @@ class DistinctRecordings:
 
 @dataclass(frozen=True)
 class _How:
-    """How batches are counted.
-
-    Args:
-        counting: of each bag.
-        skip_bad: leave out bags that cannot be used, and go on.
-        most_events: kept of a batch.
-    """
+    """How batches are counted; at most so many events are kept of each."""
 
     counting: Counting
     skip_bad: bool
@@ -195,11 +189,6 @@ class _Sum:
         self.lines += other.lines
         self.bad += other.bad
 
-    def skip(self, error: str) -> None:
-        """Leave out the bag that comes after these."""
-        self.bad.append(error)
-        self.lines.append(f'skipped: {error}')
-
     def _add_counts(self, other: _Sum, model: TrainedModel) -> None:
         if self.model is None:
             self.model = model
@@ -227,11 +216,9 @@ class _Sum:
 
 _NAMELESS = ('no connection of this bag names its sender, and sources are to be told apart; leave '
              'the bag out, or use "source: none" for all (--encoding)')
-
-
-_COPIED = ('warning: a copy that rosbag filter, compress or decompress made: if several nodes '
-           'publish on a topic, all their messages are under the name of one. Use the bag as it '
-           'was recorded, and leave topics out by the encoding (exclude_topics)')
+_COPIED = ('a copy that rosbag filter, compress or decompress made: if several nodes publish on a '
+           'topic, all their messages are under the name of one. Use the bag as it was recorded, '
+           'and leave topics out by the encoding (exclude_topics)')
 
 
 class _BadBag(ValueError):
@@ -247,7 +234,8 @@ def _count_batch(how: _How, batch: _Batch) -> _Sum:
             if not (how.skip_bad and isinstance(error, _BadBag)):
                 total.error = str(error)
                 break
-            total.skip(str(error))
+            total.bad.append(str(error))
+            total.lines.append(f'skipped: {error}')
     return total
 
 
@@ -263,7 +251,8 @@ def _count(how: _How, part: BagPart) -> _Sum:
                       events.robot_start, events.clock_steps, events.robot, events.attributes,
                       events.bag, _before(encoding, whole, events))
         model = learner.model(watch=False)
-        graph = _graph(part, summary)
+        graph = (RobotGraph.beside(part.files) if summary.encoding is None  # no event log
+                 else RobotGraph(*summary.graph))
         model.graph = graph.edges(encoding)
         model.hosts = graph.hosts_of_sources(encoding)
         model.unheard = graph.unheard(encoding)
@@ -273,30 +262,22 @@ def _count(how: _How, part: BagPart) -> _Sum:
     except ValueError as error:
         raise _BadBag(f'{part}: {error}') from error
     seconds = (events.stamps[-1] - events.stamps[0]) / SECOND_NS
-    lines = [f'{part}: {seconds:.1f} s, {len(events.stamps)} events']
-    told = recordings.clock_steps(events)
-    if told is not None:
-        lines.append(f'{part}: warning: {told.split(": ", 1)[1]}')
+    warnings = [recordings.clock_steps(events)]
     if summary.dropped:
-        lines.append(f'{part}: warning: {summary.dropped} messages came too fast to be written, '
-                     'and are missing')
-    lines += [f'{part}: warning: {reason}; it is left out' for reason in summary.left_out]
+        warnings.append(f'{summary.dropped} messages came too fast to be written, and are missing')
+    warnings += [f'{reason}; it is left out' for reason in summary.left_out]
     if events.copied and encoding.source != 'none':
-        lines.append(f'{part}: {_COPIED}')
+        warnings.append(_COPIED)
+    lines = [f'{part}: {seconds:.1f} s, {len(events.stamps)} events',
+             *(f'{part}: warning: {warning}' for warning in filter(None, warnings))]
     trained_on = TrainedOn(part, events, heads_and_tails.silences(events), begin)
     return _Sum(len(events.stamps), model, [trained_on], lines)
 
 
 def _before(encoding: EncodingRules, whole: RecordingEvents,
             events: RecordingEvents) -> Optional[Tuple[np.ndarray, np.ndarray]]:
-    """Return stamps and ids of what a bag holds before a part; None: the part is its beginning.
-
-    How long a component takes to start is learned from it.
-
-    Args:
-        encoding: how messages become events.
-        whole: what was asked for.
-        events: what is left of it without the start of the robot.
+    """Return stamps and ids of what a bag holds before the events that are left of it without the
+    start of the robot; None: nothing. How long a component takes to start is learned from it.
     """
     if not events.part.start:
         return None
@@ -307,12 +288,6 @@ def _before(encoding: EncodingRules, whole: RecordingEvents,
     read = read_events(part.files, encoding, events.event_types, None, part.start,
                        recording=part.recording)
     return read.stamps, read.ids
-
-
-def _graph(part: BagPart, summary: BagSummary) -> RobotGraph:
-    """Return whose messages reach whom, if an event log or files beside the bags say so."""
-    return (RobotGraph.beside(part.files) if summary.encoding is None
-            else RobotGraph(*summary.graph))
 
 
 def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules, BagSummary]:

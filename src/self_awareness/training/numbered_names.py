@@ -16,6 +16,7 @@ from typing import (DefaultDict, Dict, FrozenSet, Iterable, Iterator, List, Opti
 from self_awareness import (BagError, EncodingRules, EventType, TrainedModel, recorded_types,
                             summarise_bag)
 from self_awareness.parts import BagPart
+from self_awareness.reporting.text import first_of
 from self_awareness.training.counting import Counting
 from self_awareness.workers import Workers
 
@@ -81,9 +82,7 @@ class Numbered:
     examples: Tuple[str, ...]
 
     def __str__(self) -> str:
-        shown = ', '.join(self.examples[:_MOST_SHOWN])
-        more = len(self.examples) - _MOST_SHOWN
-        return f'{shown}{f" and {more} more" if more > 0 else ""}: differ by a number alone'
+        return f'{first_of(self.examples, _MOST_SHOWN)}: differ by a number alone'
 
 
 def of_training(counting: Counting, parts: Sequence[BagPart], workers: Workers,

@@ -9,7 +9,7 @@ from conftest import jittery_robot, write_bag
 
 from self_awareness import DetectorParameters, TrainedModel, Waiting, recordings
 from self_awareness.calibration.fault_injection import InjectedFault
-from self_awareness.calibration.runs import JudgedRun, injections, judge_runs, normal_run
+from self_awareness.calibration.runs import JudgedRun, Run, injections, judge_runs
 from self_awareness.judging import evidence_judge
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS
@@ -39,7 +39,7 @@ def starved(recording: RecordingEvents, begin_s: int, end_s: int) -> RecordingEv
 
 def judged(model: TrainedModel, recording: RecordingEvents) -> Tuple[Any, JudgedRun]:
     judge = evidence_judge(model, DetectorParameters())
-    return judge, judge_runs(judge, model.window, [normal_run(recording)])[0]
+    return judge, judge_runs(judge, model.window, [Run(recording)])[0]
 
 
 def test_a_recording_is_judged_with_what_its_machine_measured(model: TrainedModel,

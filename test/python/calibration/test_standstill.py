@@ -11,7 +11,6 @@ from conftest import Message, jittery_robot, write_bag
 from self_awareness import DetectorParameters, TrainedModel, Waiting, recordings
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
-from self_awareness.commands import calibrate, train
 from self_awareness.judging import evidence_judge
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
@@ -33,19 +32,9 @@ def stood_still(begin: float) -> List[Message]:
     return sorted((moved(stamp), topic, text) for stamp, topic, text in normal(begin))
 
 
-@pytest.fixture(scope='module', name='model')
-def _model(tmp_path_factory: pytest.TempPathFactory) -> str:
-    folder = tmp_path_factory.mktemp('normal')
-    bags = [write_bag(folder / f'{number}.bag', normal(1000.0 * number)) for number in (1, 2, 3)]
-    output = str(folder / 'm')
-    assert train.main([*bags[:2], '-o', output]) == 0
-    assert calibrate.main(['--model', output, '--normal', bags[2], '-o', output]) == 0
-    return output
-
-
 @pytest.fixture(name='recording')
-def _recording(model: str, tmp_path: Path) -> Any:
-    return recordings.read(TrainedModel.load(model), BagPart(
+def _recording(evidence_model: str, tmp_path: Path) -> Any:
+    return recordings.read(TrainedModel.load(evidence_model), BagPart(
         write_bag(tmp_path / 'stood.bag', stood_still(5000.0))))
 
 
@@ -63,25 +52,23 @@ def alarms(model: str, recording: Any, waiting: Sequence[Waiting]) -> List[Any]:
     return list(found.alarms) + list(found.suspicions)
 
 
-def test_nobody_is_to_blame(model: str, recording: Any) -> None:
-    assert alarms(model, recording, []), 'nobody knows who stood still'
-    assert not alarms(model, recording, measured(recording))
+def test_nobody_is_to_blame(evidence_model: str, recording: Any) -> None:
+    assert alarms(evidence_model, recording, []), 'nobody knows who stood still'
+    assert not alarms(evidence_model, recording, measured(recording))
 
 
-def test_a_death_afterwards_is_found(model: str, recording: Any) -> None:
+def test_a_death_afterwards_is_found(evidence_model: str, recording: Any) -> None:
     dead = recording.origin + int((UNTIL_S + 10.0) * SECOND_NS)
     lives = [not (stamp > dead and recording.event_types[id_].source == '/laser')
              for stamp, id_ in zip(recording.stamps, recording.ids)]
     left = replace(recording, stamps=recording.stamps[lives], ids=recording.ids[lives])
-    found = alarms(model, left, measured(left))[0]
+    found = alarms(evidence_model, left, measured(left))[0]
     assert recording.event_types[found.suspects[0].id].source == '/laser'
 
 
-def test_it_is_no_silence_that_a_limit_must_allow(tmp_path: Path) -> None:
+def test_it_is_no_silence_that_a_limit_must_allow(evidence_model: str, tmp_path: Path) -> None:
     """Of two starts, none is outvoted (docs/method.md, section 5.2)."""
-    model = str(tmp_path / 'm')
-    assert train.main([write_bag(tmp_path / '1.bag', normal(1000.0)), '-o', model]) == 0
-    trained = TrainedModel.load(model)
+    trained = TrainedModel.load(evidence_model)
 
     def found_after(recording: Any, waiting: Sequence[Waiting]) -> List[float]:
         trained.calibration, = limits.find(

@@ -26,6 +26,7 @@ def test_a_model_of_another_robot_is_an_error(program: Callable[[str, str, str],
     assert program(bag, model_file, str(tmp_path / 'm')) == 1
     error = capsys.readouterr().err
     assert f'{bag}: the model knows none of the 3 event types of this recording' in error
+    assert 'another encoding' in error
     assert error.count('\n') == 1
 
 

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import List
 
 import pytest
-from conftest import error_of
+from conftest import error_of, trained
 
-from self_awareness import TrainedModel, recordings_in_event_log
+from self_awareness import recordings_in_event_log
 from self_awareness.commands import calibrate, convert, score, train
 
 PIPE_S = 60.0
@@ -30,11 +30,10 @@ def folder(robot_bags, tmp_path: Path) -> Path:
 
 def test_a_folder_stands_for_its_bags(folder: Path, model_file: str, tmp_path: Path,
                                       capsys) -> None:
-    model, log = str(tmp_path / 'm'), str(tmp_path / 'all.bag')
-    assert train.main([str(folder), '-o', model]) == 0
-    assert [Path(each.bag).name for each in TrainedModel.load(model).recordings] == [
-        'first.bag', 'second.bag']
-    assert score.main([str(folder), '--model', model]) == 0
+    log = str(tmp_path / 'all.bag')
+    model = trained([folder], tmp_path / 'm')
+    assert [Path(each.bag).name for each in model.recordings] == ['first.bag', 'second.bag']
+    assert score.main([str(folder), '--model', model_file]) == 0
     out = capsys.readouterr().out
     assert f'{folder}/first.bag: ' in out and f'{folder}/second.bag: ' in out
     assert convert.main([str(folder), '-o', log]) == 0
@@ -42,9 +41,8 @@ def test_a_folder_stands_for_its_bags(folder: Path, model_file: str, tmp_path: P
 
 
 def test_a_part_of_a_folder_is_that_part_of_each_bag(folder: Path, tmp_path: Path) -> None:
-    model = str(tmp_path / 'm')
-    assert train.main([f'{folder}@5-20', '-o', model]) == 0
-    assert all(each.end - each.start < 15.1e9 for each in TrainedModel.load(model).recordings)
+    model = trained([f'{folder}@5-20'], tmp_path / 'm')
+    assert all(each.end - each.start < 15.1e9 for each in model.recordings)
 
 
 def test_a_folder_without_bags_is_named(tmp_path: Path, capsys) -> None:
@@ -79,8 +77,7 @@ def test_a_pipe_without_a_name_is_read_as_yaml(robot_bags, tmp_path: Path) -> No
     reader, writer = os.pipe()
     with open(writer, 'w', encoding='utf-8') as rules:  # fits into a pipe
         rules.write('source: none\n')
-    assert train.main([robot_bags[0], '--encoding', f'/dev/fd/{reader}', '-o',
-                       str(tmp_path / 'm')]) == 0
+    trained([robot_bags[0]], tmp_path / 'm', '--encoding', f'/dev/fd/{reader}')
     os.close(reader)
 
 

@@ -8,8 +8,8 @@ from typing import List
 import pytest
 import rosbag
 
-from self_awareness import EncodingRules, TrainedModel
-from self_awareness.commands import induce, simulate, train
+from self_awareness import EncodingRules
+from self_awareness.commands import induce, simulate
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 DAY_S = 86_400
@@ -51,12 +51,10 @@ def test_a_duration_that_is_none_is_refused(duration: str, tmp_path: Path, capsy
     assert os.listdir(tmp_path) == []
 
 
-def test_train_takes_the_graph_from_beside_the_bags(runs: List[Path], tmp_path: Path) -> None:
-    model = str(tmp_path / 'm')
-    assert train.main([*map(str, runs), '-o', model]) == 0
-    graph = TrainedModel.load(model).graph
-    assert ('/player', '/scan', '/slam') in graph
-    assert graph == RobotGraph.load(graph_file(str(runs[0]))).edges(EncodingRules())
+def test_the_graph_lies_beside_the_bags(runs: List[Path]) -> None:
+    for run in runs:
+        graph = RobotGraph.load(graph_file(str(run))).edges(EncodingRules())
+        assert ('/player', '/scan', '/slam') in graph
 
 
 def test_a_component_may_be_named_as_its_node(tmp_path: Path, capsys) -> None:

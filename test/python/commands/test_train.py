@@ -12,9 +12,9 @@ from typing import Any, Callable, Dict, List, Tuple
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
-from conftest import robot, wait_until
+from conftest import error_of, robot, trained, wait_until
 
-from self_awareness import EvidenceModel, PaperModel, TrainedModel, Tuning, stable_name
+from self_awareness import TrainedModel, stable_name
 from self_awareness.commands import train
 
 Bags = Tuple[str, str]
@@ -36,7 +36,7 @@ def test_it_says_what_it_learned(robot_bags: Bags, tmp_path, capsys) -> None:
     assert [recording.bag for recording in model.recordings] == ['first.bag', 'second.bag']
     assert model.bin_size == 10_000_000 and model.window == 100_000_000
     assert model.horizon_bins == 0 and model.threshold is None
-    assert model.encoding.source == 'callerid'
+    assert model.encoding.source == 'callerid' and model.detectors == 'evidence'
 
 
 def test_parts_of_bags_are_trained_on(robot_bags: Bags, tmp_path, capsys) -> None:
@@ -58,9 +58,8 @@ def test_parts_of_bags_are_trained_on(robot_bags: Bags, tmp_path, capsys) -> Non
 def test_parts_that_overlap_are_refused(robot_bags: Bags, parts: Bags, same: Bags, tmp_path,
                                         capsys) -> None:
     bag = robot_bags[0]
-    assert train.main([bag + parts[0], bag + parts[1], '-o', str(tmp_path / 'm')]) == 1
-    assert (f'{bag}{same[0]}: the same recording as {bag}{same[1]}; name it once'
-            in capsys.readouterr().err)
+    error = error_of(train, [bag + parts[0], bag + parts[1], '-o', str(tmp_path / 'm')], capsys)
+    assert f'{bag}{same[0]}: the same recording as {bag}{same[1]}; name it once' in error
 
 
 def test_types_too_rare_to_judge_are_listed(make_bag: Callable[..., str], tmp_path,
@@ -87,63 +86,11 @@ def test_the_options_reach_the_model(robot_bags: Bags, tmp_path, capsys) -> None
     assert 1010.0 <= start < 1010.05 and 1019.95 < end <= 1020.0
 
 
-def test_the_numbers_of_the_method_are_no_options(robot_bags: Bags, tmp_path, capsys) -> None:
-    output = tmp_path / 'm'
-    for option in ('--predecessors', '--least-effect', '--least-effect-of-period'):
-        assert train.main([robot_bags[0], '-o', str(output), option, '1']) == 2
-        assert option in capsys.readouterr().err and not output.exists()
-    said(capsys, [robot_bags[0], '-o', str(output)])
-    assert TrainedModel.load(str(output)).tuning == Tuning()
-
-
-def test_what_is_watched_can_be_loaded_alone(robot_bags: Bags, tmp_path, capsys) -> None:
-    output = str(tmp_path / 'm')
-    said(capsys, [*robot_bags, '--detector', 'both', '-o', output])
-    model = TrainedModel.load(output)
-    watched = TrainedModel.load(output, watched_only=True)
-    assert watched.event_types == model.event_types and watched.events == model.events
-    assert len(EvidenceModel(watched).tracks) == len(EvidenceModel(model).tracks)
-    assert watched.pairs == 0
-    with pytest.raises(ValueError, match="no counts for the paper's detector"):
-        PaperModel(watched)
-
-
-def test_bags_without_senders_are_trained_without_sources(make_bag: Callable[..., str], tmp_path,
-                                                          capsys) -> None:
-    bag = make_bag('nameless.bag', robot(10.0), sources=False)
-    output = str(tmp_path / 'm')
-    lines = said(capsys, [bag, '-o', output])
-    assert any('source: none' in line for line in lines)
-    assert TrainedModel.load(output).encoding.source == 'none'
-
-
-def test_compressed_bags_train_the_same(robot_bags: Bags, make_bag: Callable[..., str],
-                                        tmp_path, capsys) -> None:
-    import rosbag
-    models = []
-    for compression in (rosbag.Compression.NONE, rosbag.Compression.BZ2, rosbag.Compression.LZ4):
-        bag = make_bag(f'{compression}.bag', robot(1000.0), compression=compression)
-        said(capsys, [bag, '-o', str(tmp_path / compression)])
-        models.append(TrainedModel.load(str(tmp_path / compression)))
-    histograms = [[model.histogram(i, j) for i in range(3) for j in range(3)] for model in models]
-    assert histograms[0] == histograms[1] == histograms[2]
-    assert len({model.recordings[0].fingerprint for model in models}) == 1
-
-
-def test_a_model_may_be_trained_again(robot_bags: Bags, tmp_path, capsys) -> None:
-    output = str(tmp_path / 'm')
-    said(capsys, [robot_bags[0], '-o', output])
-    said(capsys, [robot_bags[1], '-o', output])
-    assert TrainedModel.load(output).recordings[0].bag == 'second.bag'
-    assert [path.name for path in tmp_path.iterdir()] == ['m']
-
-
 def test_one_recording_gives_preliminary_limits_by_its_halves(long_bags: Bags, tmp_path,
                                                               capsys) -> None:
-    output = str(tmp_path / 'm')
-    assert train.main([long_bags[0], '-o', output]) == 0
+    output = tmp_path / 'm'
+    found = trained([long_bags[0]], output).calibration
     lines = capsys.readouterr().out.splitlines()
-    found = TrainedModel.load(output).calibration
     # The detector settles for 5 s of 120 s; the second part settles in the first one.
     assert found.method == 'cross-fit' and found.windows == pytest.approx(1150, abs=4)
     assert re.fullmatch(r'learned from 1 start, 2 min: at most 1\.\d false alarms an hour '
@@ -157,41 +104,29 @@ def test_one_recording_gives_preliminary_limits_by_its_halves(long_bags: Bags, t
     assert 0.0 <= found.false_alarms_per_hour < math.inf and found.budget == 0.5
 
 
-def test_two_recordings_give_preliminary_limits_by_each_other(long_bags: Bags, tmp_path) -> None:
-    output = str(tmp_path / 'm')
-    assert train.main([*long_bags, '-o', output]) == 0
-    model = TrainedModel.load(output)
-    found = model.calibration
-    assert found.method == 'cross-fit' and found.windows == pytest.approx(2300, abs=4)
-    assert len(found.limits) == len(EvidenceModel(model).tracks)
-    assert [recording.bag for recording in found.recordings] == ['monday.bag', 'tuesday.bag']
-
-
 def test_too_little_for_limits_is_told_and_the_model_is_written(robot_bags: Bags, tmp_path,
                                                                 capsys) -> None:
-    output = str(tmp_path / 'm')
-    assert train.main([robot_bags[0], '-o', output]) == 0
+    assert trained([robot_bags[0]], tmp_path / 'm').calibration is None
     told = capsys.readouterr()
     assert told.out.splitlines()[0] == (
         'learned from 1 start, 30 s: no limits yet, so that nothing is an alarm')
     warning, = told.err.splitlines()
     assert warning.startswith('train: warning: no limits: too little normal operation')
     assert '50 s' in warning
-    assert TrainedModel.load(output).calibration is None
 
 
 def test_the_graph_needs_a_master(robot_bags: Bags, tmp_path, monkeypatch, capsys) -> None:
     # Nobody listens on port 1.
     monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')
-    assert train.main([robot_bags[0], '--graph', '-o', str(tmp_path / 'm')]) == 1
-    error = capsys.readouterr().err
+    error = error_of(train, [robot_bags[0], '--graph', '-o', str(tmp_path / 'm')], capsys)
     assert error.startswith('train: error: --graph: no master at http://127.0.0.1:1')
-    assert 'ROS_MASTER_URI' in error and error.count('\n') == 1
+    assert 'ROS_MASTER_URI' in error
     assert not (tmp_path / 'm').exists()
 
 
 def test_only_the_master_is_asked_for_the_graph(robot_bags: Bags, tmp_path, monkeypatch) -> None:
     asked = []
+    node, slam = '/slam_4242_1600000000000', stable_name('/slam_4242_1600000000000')
 
     class Master:
         """Answers all calls, and remembers them."""
@@ -200,18 +135,21 @@ def test_only_the_master_is_asked_for_the_graph(robot_bags: Bags, tmp_path, monk
             asked.append(method)
             if method == 'system.multicall':  # looks up nodes
                 return [[(1, '', 'http://base:1234/')] for _ in arguments[0]]
-            state = [[['/scan', ['/laser']]], [['/scan', ['/slam']]], []]
+            state = [[['/scan', ['/laser']], ['/map', [node]], ['/charge', ['/battery']]],
+                     [['/scan', [node, '/log']], ['/map', ['/log']]], []]
             return (1, '', {'getSystemState': state, 'getTopicTypes': []}[method])
 
     with SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False) as server:
         server.register_instance(Master())
         threading.Thread(target=server.serve_forever).start()
         monkeypatch.setenv('ROS_MASTER_URI', f'http://127.0.0.1:{server.server_address[1]}')
-        assert train.main([robot_bags[0], '--graph', '-o', str(tmp_path / 'm')]) == 0
+        model = trained([robot_bags[0]], tmp_path / 'm', '--graph')
         server.shutdown()
     # It neither registered, nor asked any node.
     assert asked == ['getSystemState', 'getTopicTypes', 'system.multicall']
-    assert TrainedModel.load(str(tmp_path / 'm')).hosts == {'/laser': 'base'}
+    assert set(model.hosts) == {'/laser', '/battery', slam} and model.hosts['/laser'] == 'base'
+    assert model.graph == {('/laser', '/scan', slam), ('/laser', '/scan', '/log'),
+                           (slam, '/map', '/log')}
 
 
 @pytest.mark.parametrize('program', [['train'], ['calibrate', '--model', 'm', '--normal']])
@@ -231,23 +169,9 @@ def test_the_robots_nodes_go_first(program: List[str], model_file: str, tmp_path
             process.kill()
 
 
-def test_the_graph_is_who_subscribes_to_whom(robot_bags: Bags, tmp_path, monkeypatch) -> None:
-    state = [[['/scan', ['/laser']], ['/map', ['/slam_4242_1600000000000']], ['/charge', ['/b']]],
-             [['/scan', ['/slam_4242_1600000000000', '/log']], ['/map', ['/log']]], []]
-    monkeypatch.setattr('rosgraph.Master.getSystemState', lambda _: state)
-    monkeypatch.setattr('rosgraph.Master.getTopicTypes', lambda _: [])
-    monkeypatch.setattr('self_awareness.training.live_graph._hosts', lambda *_: {})
-    output = str(tmp_path / 'm')
-    assert train.main([robot_bags[0], '--graph', '-o', output]) == 0
-    slam = stable_name('/slam_4242_1600000000000')
-    assert TrainedModel.load(output).graph == {
-        ('/laser', '/scan', slam), ('/laser', '/scan', '/log'), (slam, '/map', '/log')}
-
-
-def found_after(model: str) -> Dict[str, float]:
+def found_after(model: TrainedModel) -> Dict[str, float]:
     """Return how soon the death of each component is found [s]; infinity: it is not."""
-    return {each.component: each.death_found_after or math.inf
-            for each in TrainedModel.load(model).coverage()}
+    return {each.component: each.death_found_after or math.inf for each in model.coverage()}
 
 
 @pytest.mark.parametrize('starts', [1, 5])
@@ -259,20 +183,18 @@ def test_a_hole_in_one_recording_is_named_and_decides_only_if_most_starts_do_not
     begin = 5 * between
     hung = make_bag('friday.bag', [each for each in robot(begin, 60.0) if each[1] != '/slam'
                                    or not begin + 20.0 < each[0] < begin + 26.0])
-    output = str(tmp_path / 'm')
-    assert train.main([*whole, hung, '-o', output]) == 0
+    model = trained([*whole, hung], tmp_path / 'm')
     told = capsys.readouterr().err
     if starts > 1:
         assert told == ''  # nobody needs to act
-        base = str(tmp_path / 'again')
-        assert train.main([*whole, hung, '-o', base, '--details']) == 0
+        trained([*whole, hung], tmp_path / 'again', '--details')
         told = capsys.readouterr().err
     assert re.search(r'friday.bag: /slam \(/map\) is silent for 6.\d s from (19.9|20.0) s', told)
     decides = starts == 1
     assert ('because of that its death is found after' in told) == decides
     assert ('--leave-out-holes' in told) == decides
     assert ('all the same, as most starts agree' in told) != decides
-    found_s = found_after(output)
+    found_s = found_after(model)
     assert found_s['/laser'] < 1.0 and (found_s['/slam'] > 6.0 if decides else
                                         found_s['/slam'] < 1.0)
 
@@ -282,9 +204,7 @@ def test_a_hole_is_left_out_if_asked(make_bag: Callable[..., str], tmp_path, cap
              for number, day in enumerate(('monday', 'tuesday'), 1)]
     hung = make_bag('friday.bag', [each for each in robot(210.0, 60.0)
                                    if each[1] != '/slam' or not 230.0 < each[0] < 236.0])
-    output = str(tmp_path / 'm')
-    assert train.main([*whole, hung, '--leave-out-holes', '-o', output]) == 0
+    model = trained([*whole, hung], tmp_path / 'm', '--leave-out-holes')
     assert 'left out: ' in capsys.readouterr().err
-    assert found_after(output)['/slam'] < 1.0
-    model = TrainedModel.load(output)
+    assert found_after(model)['/slam'] < 1.0
     assert [recording.bag for recording in model.recordings].count('friday.bag') == 2

@@ -8,7 +8,7 @@ import subprocess
 import sys
 from contextlib import closing
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Optional
+from typing import Dict, Iterator, List, Optional
 
 import numpy as np
 import pytest
@@ -16,9 +16,6 @@ from conftest import error_of, jittery_robot, learned, trained, wait_until, writ
 
 from self_awareness import TrainedModel, workers
 from self_awareness.commands import train
-from self_awareness.parts import BagPart
-from self_awareness.training import many_bags
-from self_awareness.training.many_bags import Counting
 
 distributed = pytest.importorskip(
     'distributed', reason='dask.distributed (python3-distributed) is not installed')
@@ -132,30 +129,13 @@ def test_a_worker_is_killed_and_the_result_is_right(cluster: Cluster, bags: List
     assert training.returncode == 0, err
     assert err.splitlines() == [f'train: warning: skipped: {missing}: no such file']
     assert lost and not cluster.address_of('other') and cluster.address_of('one')
+    with closing(workers.Cluster(cluster.address)) as one_worker:
+        assert one_worker.batches(len(bags)) == 2, 'sums are made on the cluster'
     told = [line.split(': ')[0] for line in out.splitlines()]
     assert [each for each in told if each in bags] == bags
     model = TrainedModel.load(str(tmp_path / 'm'))
     assert np.isfinite(model.calibration.limits).any()
     assert learned(model, calibrations=True) == learned(expected, calibrations=True)
-
-
-def test_sums_are_made_on_the_cluster(cluster: Cluster, bags: List[str],
-                                      expected: TrainedModel) -> None:
-    results = []
-
-    class Watched(workers.Cluster):
-        def map(self, *arguments: Any) -> Iterator[Any]:
-            for result in super().map(*arguments):
-                if hasattr(result, 'trained_on'):
-                    results.append(result)
-                yield result
-
-    for name in ('one', 'other'):
-        cluster.add_worker(name)
-    with closing(Watched(cluster.address)) as watched:
-        summed = many_bags.train([BagPart(bag) for bag in bags], Counting(), watched)
-    assert [len(each.trained_on) for each in results] == [4, 5]
-    assert learned(summed.model) == learned(expected)
 
 
 def test_workers_without_the_package_are_told(cluster: Cluster, bags: List[str], tmp_path: Path,

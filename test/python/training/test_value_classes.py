@@ -8,7 +8,7 @@ from typing import List
 import numpy as np
 import pytest
 import rosbag
-from conftest import put, trained
+from conftest import error_of, put, trained
 from std_msgs.msg import Float32
 
 from self_awareness import encoding_file, read_events
@@ -108,8 +108,7 @@ def test_models_of_other_classes_are_not_merged(bags: List[str], encoding: str, 
     models = [str(tmp_path / name) for name in ('a', 'b')]
     for bag, model in zip(bags, models):
         trained([bag], Path(model), '--encoding', encoding)
-    assert merge.main([*models, '-o', str(tmp_path / 'both')]) != 0
-    assert 'classes' in capsys.readouterr().err
+    assert 'classes' in error_of(merge, [*models, '-o', str(tmp_path / 'both')], capsys)
 
 
 @pytest.mark.parametrize('field, values, what', [
@@ -119,15 +118,12 @@ def test_what_has_no_classes_is_named(tmp_path: Path, field: str, values: List[f
     file = tmp_path / 'e.yaml'
     file.write_text(ENCODING.replace('data', field))
     bag = write(tmp_path / '1.bag', 1000.0, values)
-    assert train.main([bag, '--encoding', str(file), '-o', str(tmp_path / 'm')]) != 0
-    said = capsys.readouterr().err
+    said = error_of(train, [bag, '--encoding', str(file), '-o', str(tmp_path / 'm')], capsys)
     assert what in said and f'std_msgs/Float32: {field}' in said
 
 
 def test_event_logs_hold_no_values(bags: List[str], encoding: str, tmp_path: Path, capsys) -> None:
-    log = str(tmp_path / 'log.bag')
-    assert convert.main([bags[0], '--encoding', encoding, '-o', log]) != 0
-    assert 'are not learned yet' in capsys.readouterr().err
+    log, options = str(tmp_path / 'log.bag'), ['--encoding', encoding, '-o']
+    assert 'are not learned yet' in error_of(convert, [bags[0], *options, log], capsys)
     assert convert.main([bags[0], '-o', log]) == 0
-    assert train.main([log, '--encoding', encoding, '-o', str(tmp_path / 'm')]) != 0
-    assert 'holds no values' in capsys.readouterr().err
+    assert 'holds no values' in error_of(train, [log, *options, str(tmp_path / 'm')], capsys)
