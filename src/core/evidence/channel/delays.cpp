@@ -198,8 +198,7 @@ double ExpectedDelays::leastLimit(std::size_t /*track*/) const {
 }
 
 double ExpectedDelays::limit(std::size_t /*track*/, double largest, double most) const {
-  // Nobody knows how far a sum would have grown that ended at its cap.
-  return largest < DelaySum::kMost ? most : std::numeric_limits<double>::quiet_NaN();
+  return limitOfSum(largest, most);
 }
 
 const Track& ExpectedDelays::track(std::size_t number) const {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/evidence/channel/channel.h"
+#include "core/evidence/channel/sum.h"
 #include "core/evidence/count/log_bins.h"
 
 namespace self_awareness::core::evidence {
@@ -66,10 +67,8 @@ struct DelayNumbers {
 /// what is unusual adds to it, and it never falls below 0. A fault that lasts is found soon, one
 /// that comes and goes is found later, and chance alone hardly adds up.
 struct DelaySum {
-  static constexpr double kMost = 200;  ///< while the limit is not known
-
   double value = 0;
-  double cap = kMost;
+  double cap = kMostSum;
   double regime = 0;       ///< mean surprise of the last minutes
   std::int64_t since = 0;  ///< stamp of the first delay since it was 0 last [ns]
 
@@ -87,9 +86,7 @@ struct DelaySum {
     return step;
   }
   void capAt(double limit, const DelayNumbers& numbers) {
-    if (limit > 0) {  // never so where it is NaN
-      cap = numbers.most_of_limit * limit;
-    }
+    cap = capOfSum(limit, numbers.most_of_limit, cap);
   }
   /// Whether it is beyond its limit, once that is known.
   bool isAbnormal(const DelayNumbers& numbers) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/evidence/channel/channel.h"
+#include "core/evidence/channel/sum.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
@@ -110,10 +111,8 @@ class MessagesState : public ChannelState {
   void restart() override { messages_.assign(messages_.size(), {}); }
   void capAt(const std::vector<double>& limits) override {
     for (std::size_t number = 0; number < messages_.size(); ++number) {
-      const double limit = limits[expected_.tracks()[number]];
-      if (limit > 0) {  // never so where it is NaN
-        most_[number] = expected_.model().tuning().most_of_limit * limit;
-      }
+      most_[number] = capOfSum(limits[expected_.tracks()[number]],
+                               expected_.model().tuning().most_of_limit, most_[number]);
     }
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override {

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "core/evidence/channel/sum.h"
 #include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
@@ -13,7 +14,6 @@ namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-constexpr double kMost = 200;  // of a sum whose limit is not known
 // Mean gaps: a longer one, by a bin, makes its type late.
 constexpr double kLate = 1.2;
 // More than that is not made up for [ns].
@@ -89,8 +89,7 @@ class ExpectedPaces : public Expectation {
   std::unique_ptr<ChannelState> start() const override;
   double leastLimit(std::size_t track) const override { return least_[numberOf(track)]; }
   double limit(std::size_t /*track*/, double largest, double most) const override {
-    // Nobody knows how far a sum would have grown that ended at its cap.
-    return largest < kMost ? most : std::numeric_limits<double>::quiet_NaN();
+    return limitOfSum(largest, most);
   }
   double step(std::size_t number, std::int64_t gap) const {
     return steps_[number][log_bins::bin(gap)];
@@ -167,7 +166,7 @@ class PacesState : public ChannelState {
  private:
   struct OfType {
     double sum = 0;
-    double cap = kMost;
+    double cap = kMostSum;
     std::int64_t since = 0;  // begin of the first gap since the sum was 0 [ns]
     std::int64_t last = 0;   // end of the last one [ns]
     std::uint32_t gaps = 0;  // since then
@@ -249,10 +248,8 @@ void PacesState::restart() {
 
 void PacesState::capAt(const std::vector<double>& limits) {
   for (std::size_t number = 0; number < paces_.size(); ++number) {
-    const double limit = limits[expected_.tracks()[number]];
-    if (limit > 0) {  // never so where it is NaN
-      paces_[number].cap = most_of_limit_ * limit;
-    }
+    double& cap = paces_[number].cap;
+    cap = capOfSum(limits[expected_.tracks()[number]], most_of_limit_, cap);
   }
 }
 

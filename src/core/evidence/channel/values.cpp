@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/evidence/channel/sum.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
@@ -24,7 +25,6 @@ const std::string kLog = "/rosout";
 constexpr double kDeviations = 3;
 // The sum that chance reaches so often in an hour at most.
 constexpr double kByChance = 0.001;
-constexpr double kMost = 200;  // of a sum whose limit is not known
 
 /// All values of a sender on a topic, and how many messages had one of them.
 struct Topic {
@@ -109,8 +109,7 @@ class ExpectedShares : public Expectation {
     return usual_[numberOf(track)].least_limit;
   }
   double limit(std::size_t /*track*/, double largest, double most) const override {
-    // Nobody knows how far a sum would have grown that ended at its cap.
-    return largest < kMost ? most : std::numeric_limits<double>::quiet_NaN();
+    return limitOfSum(largest, most);
   }
   const Model& model() const { return model_; }
   const Usual& usual(std::size_t number) const { return usual_[number]; }
@@ -157,10 +156,9 @@ class SharesState : public ChannelState {
   }
   void capAt(const std::vector<double>& limits) override {
     for (std::size_t number = 0; number < values_.size(); ++number) {
-      const double limit = limits[expected_.tracks()[number]];
-      if (limit > 0) {  // never so where it is NaN
-        values_[number].cap = expected_.model().tuning().most_of_limit * limit;
-      }
+      double& cap = values_[number].cap;
+      cap = capOfSum(limits[expected_.tracks()[number]], expected_.model().tuning().most_of_limit,
+                     cap);
     }
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
@@ -193,7 +191,7 @@ class SharesState : public ChannelState {
  private:
   struct OfValue {
     double sum = 0;
-    double cap = kMost;
+    double cap = kMostSum;
     std::int64_t last = 0;       // stamp of the last message [ns]
     std::int64_t since = 0;      // the first message since the sum was 0 [ns]
     std::uint32_t with = 0;      // the value, since then

@@ -105,6 +105,9 @@ bool SlowerClock::haveNoOtherReason(const ByComponent& faster, const std::vector
   for (EventId id = 0; id < model_->size(); ++id) {
     others = others || (heard.hasSeen(id) && faster.count(model_->componentIndex(id)) == 0);
   }
+  if (!is_abnormal || !others) {
+    return false;
+  }
   const Explanation::Leads leads = explanation_.leads(excesses);
   const auto isRootOfAll = [&](const auto& root) {
     const std::vector<bool> downstream = explanation_.downstreamOf(root.first, leads);
@@ -112,7 +115,7 @@ bool SlowerClock::haveNoOtherReason(const ByComponent& faster, const std::vector
       return each.first == root.first || downstream[each.first];
     });
   };
-  return is_abnormal && others && std::none_of(faster.begin(), faster.end(), isRootOfAll);
+  return std::none_of(faster.begin(), faster.end(), isRootOfAll);
 }
 
 }  // namespace self_awareness::core::evidence
