@@ -29,14 +29,14 @@ struct AgeOfMessages {
     double longest = 0;
   };
 
-  void add(const Heard::Arrival& arrival, const Usual& usual, double /*most*/) {
+  void add(const Heard::Arrival& arrival, const Usual& usual, double most) {
     if (arrival.stalled) {
       return;  // it may have waited for that reason
     }
     before = last;
     if (arrival.attributes.hasAge()) {
       age = ageOf(arrival.attributes.age);
-      last = level.add(arrival.stamp, age, usual.shortest);
+      last = level.add(arrival.stamp, age, usual.shortest, most);
     } else {
       age = Reason::kNone;
       last = kWithoutStamp;

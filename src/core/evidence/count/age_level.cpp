@@ -19,11 +19,13 @@ constexpr double kSpanOfAge = 0.2;
 
 }  // namespace
 
-double AgeLevel::add(std::int64_t now, double age, double usual) {
+double AgeLevel::add(std::int64_t now, double age, double usual, double most) {
   const std::int64_t span = std::max(kSpan, toNanoseconds(kSpanOfAge * std::abs(age)));
   if (!begun_ || now - begin_ >= span) {
-    before_ = kNone;
-    if (begun_ && now - begin_ < 2 * span) {
+    const bool says_nothing = youngest_ == kNone && most < kNone;
+    if (!begun_ || now - begin_ >= 2 * span) {
+      before_ = kNone;
+    } else if (!says_nothing) {
       before_ = youngest_;
     }
     youngest_ = kNone;
@@ -33,11 +35,13 @@ double AgeLevel::add(std::int64_t now, double age, double usual) {
   const double known = std::min(youngest_, before_);
   if (age < std::min(usual, 0.0) && known < kNone &&
       known - age > kAhead + kClassAhead * std::abs(known)) {
-    return known - age;  // it does not say what is usual, unless all are so
+    return known - age;
   }
-  youngest_ = std::min(youngest_, age);
-  const double level = std::min(youngest_, before_);
-  return std::max(age - level - (level < 0 ? kClassBack : kClass) * std::abs(level), 0.0);
+  const double level = std::min(known, age);
+  const double older =
+      std::max(age - level - (level < 0 ? kClassBack : kClass) * std::abs(level), 0.0);
+  youngest_ = older > most ? youngest_ : std::min(youngest_, age);
+  return older;
 }
 
 }  // namespace self_awareness::core::evidence

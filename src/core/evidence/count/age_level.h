@@ -21,9 +21,11 @@ class AgeLevel {
   /// @param now when it came [ns]
   /// @param age since its stamp [s]; negative: it is of the future
   /// @param usual youngest age in training [s]: who comes back to it is not ahead
+  /// @param most who is older by more [s], or ahead, says nothing of what is usual, however long
+  /// that lasts; infinity: it is usual after a minute or two
   /// @return how much older it is than the class of the youngest of late, or how much further
   /// ahead [s]
-  double add(std::int64_t now, double age, double usual = 0);
+  double add(std::int64_t now, double age, double usual = 0, double most = kNone);
 
  private:
   static constexpr double kNone = std::numeric_limits<double>::infinity();

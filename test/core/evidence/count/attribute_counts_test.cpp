@@ -31,6 +31,19 @@ TEST(AgeLevel, AStampOfTheFutureIsOneUntilAllAreSo) {
   EXPECT_EQ(level.add(200 * kSecond, -2), 0);
 }
 
+TEST(AgeLevel, WhoIsTooOldSaysNothingOfWhatIsUsualHoweverLongThatLasts) {
+  constexpr double kMost = 1;
+  AgeLevel level;
+  level.add(0, 0.02, 0, kMost);
+  for (int second = 1; second < 600; ++second) {
+    EXPECT_GT(level.add(second * kSecond, 3, 0, kMost), 2.9) << second;
+  }
+  EXPECT_EQ(level.add(600 * kSecond, 0.02, 0, kMost), 0);
+  for (int second = 601; second < 1200; ++second) {
+    EXPECT_GT(level.add(second * kSecond, -3, 0, kMost), 2.9) << second;
+  }
+}
+
 TEST(AgeLevel, WhoWasLateAndComesBackToWhatIsUsualIsNotAhead) {
   AgeLevel level;
   level.add(0, -12.5, -15);  // its clock is 15 s ahead, and the message had waited
