@@ -40,19 +40,28 @@ void blame(const Suspect& suspect, Alarm& alarm) {
   alarm.waiting.clear();
 }
 
-/// Takes in that a culprit has an excuse, that who is dead has none any more, or that somebody was
-/// missed before the culprit was. Who is to blame is settled when an alarm is raised, and changes
-/// for nothing else.
+/// Whether somebody is to blame rather than the culprit: what is wrong with it began before.
+bool beganEarlier(const Suspect& first, const Suspect& culprit) {
+  if (isAbsence(first.reason.kind)) {
+    return first.missed > 0 && first.missed < culprit.onset;
+  }
+  return first.component != culprit.component && first.onset > 0 && first.onset < culprit.onset;
+}
+
+/// Takes in that a culprit has an excuse, that who is dead has none any more, or that who is named
+/// before the culprit now was unusual before. Who is to blame is settled when an alarm is raised,
+/// and changes for nothing else.
 void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Alarm& alarm) {
   const bool was_busy = alarm.kind == Kind::kBusyMachine;
   const bool is_excused_no_more = (was_busy && !verdict.busy) ||
                                   (alarm.kind == Kind::kNewMode && !verdict.silent) ||
                                   alarm.kind == Kind::kSlowerClock;  // which nobody is silent for
   const Suspect* culprit = alarm.suspectToBlame();
-  if (!suspects.empty() && suspects.front().abnormal && isAbsence(suspects.front().reason.kind)) {
-    const std::int64_t missed = suspects.front().missed;
-    if (is_excused_no_more || (culprit != nullptr && missed > 0 && missed < culprit->onset)) {
-      blame(suspects.front(), alarm);
+  if (!suspects.empty() && suspects.front().abnormal) {
+    const Suspect& first = suspects.front();
+    if ((is_excused_no_more && isAbsence(first.reason.kind)) ||
+        (culprit != nullptr && beganEarlier(first, *culprit))) {
+      blame(first, alarm);
       culprit = alarm.suspectToBlame();
     }
   }
@@ -78,14 +87,17 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
 }
 
 /// Whether what is wrong with a suspect is told better now: on how many topics somebody is there
-/// who should not be, or by whose clock, shows with time; and who lost some messages in a row fell
-/// silent for that.
+/// who should not be, or by whose clock, shows with time; who lost some messages in a row fell
+/// silent for that; and who is fast by the factor of others is so by the clock.
 bool isToldBetter(const Suspect& before, const Suspect& now) {
   const bool grows = isShared(now.reason.kind) || !now.reason.topics.empty();
   const bool comes_with_losses =
       now.abnormal && now.reason.kind == Kind::kLossy && isAbsence(before.reason.kind);
-  return now.id == before.id &&
-         (comes_with_losses || (grows && now.reason.kind == before.reason.kind));
+  const bool is_the_clock = now.component == before.component &&
+                            now.reason.kind == Kind::kSlowerClock &&
+                            before.reason.kind == Kind::kFast;
+  return is_the_clock || (now.id == before.id &&
+                          (comes_with_losses || (grows && now.reason.kind == before.reason.kind)));
 }
 
 void growWith(const Verdict& verdict, Alarm& alarm) {
@@ -93,24 +105,14 @@ void growWith(const Verdict& verdict, Alarm& alarm) {
     for (Suspect& suspect : *named) {
       for (const Suspect& now : verdict.suspects) {
         if (isToldBetter(suspect, now)) {
-          if (suspect.component == alarm.culprit && suspect.reason.kind == alarm.kind) {
+          const bool is_to_blame = suspect.component == alarm.culprit || isShared(alarm.kind);
+          if (is_to_blame && suspect.reason.kind == alarm.kind) {
             alarm.kind = now.reason.kind;
             alarm.reason = now.reason.words;
           }
           suspect.reason = now.reason;
         }
       }
-    }
-  }
-  const Reason& first = alarm.suspects.front().reason;
-  if (alarm.kind == first.kind && (isShared(first.kind) || !first.topics.empty())) {
-    alarm.reason = first.words;
-  }
-  for (const Suspect& now : verdict.suspects) {
-    if (now.reason.kind == Kind::kSlowerClock && alarm.culprit == now.component &&
-        alarm.kind == Kind::kFast) {
-      alarm.kind = now.reason.kind;
-      alarm.reason = now.reason.words;
     }
   }
   if (isShared(alarm.kind)) {

@@ -266,6 +266,21 @@ TEST_F(AlarmsTest, WhoWasMissedBeforeTheCulpritFailedIsToBlame) {
   expectBlamed("/b", Kind::kSilent);
 }
 
+TEST_F(AlarmsTest, WhoSlowedDownBeforeItsFollowerFellSilentIsToBlame) {
+  const std::int64_t failed = kStart - kWindow;
+  Suspect slow = suspect(1, Kind::kSlow);
+  slow.abnormal = true;
+  slow.onset = failed + kWindow;
+  add(verdict(kAlarm, {silentSince(0, failed)}));
+  add(verdict(kAlarm, {slow, silentSince(0, failed)}));
+  expectBlamed("/a", Kind::kSilent);  // the other one was slow only afterwards
+  slow.onset = failed - 10 * kWindow;
+  add(verdict(kAlarm, {silentSince(0, failed), slow}));
+  expectBlamed("/a", Kind::kSilent);  // nor is it first
+  add(verdict(kAlarm, {slow, silentSince(0, failed)}));
+  expectBlamed("/b", Kind::kSlow);
+}
+
 TEST_F(AlarmsTest, ANewModeThatIsOverDoesNotHideWhoIsStillSilent) {
   add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   addSilent({{}, {"/a", "/b"}, kStart, true});
