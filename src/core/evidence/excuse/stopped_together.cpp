@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <utility>
 
 namespace self_awareness::core::evidence {
@@ -295,23 +296,33 @@ std::vector<StoppedTogether::Ids> StoppedTogether::groups(const Ids& silent,
 StoppedTogether::Ids StoppedTogether::stoppedWith(EventId id, const Ids& silent,
                                                   const Window& window) const {
   const auto stamps = window.heard.stamps();
-  const auto wasMissed = [&](EventId first, std::int64_t later) {
-    return model_->overdue(first, later - stamps[first]) > window.limits[first];
-  };
   Ids together;
   for (const EventId other : silent) {
     const EventId first = stamps[other] < stamps[id] ? other : id;
     const std::int64_t apart = std::abs(stamps[other] - stamps[id]);
     if (apart <= kRateSpan + static_cast<std::int64_t>(model_->meanGap(first)) &&
-        !wasMissed(first, stamps[first] + apart)) {
+        !wasMissed(first, stamps[first] + apart, window)) {
       together.push_back(other);
     }
   }
   const std::int64_t last = lastOf(together, window.heard);
   together.erase(std::remove_if(together.begin(), together.end(),
-                                [&](EventId other) { return wasMissed(other, last); }),
+                                [&](EventId other) { return wasMissed(other, last, window); }),
                  together.end());
   return together;
+}
+
+bool StoppedTogether::wasMissed(EventId id, std::int64_t stamp, const Window& window) const {
+  const std::int64_t last = window.heard.stamps()[id];
+  const std::size_t component = model_->componentIndex(id);
+  // Who waits for it may have told so first.
+  const auto tells = [&](const Excess& excess) {
+    return last < excess.abnormal && excess.abnormal <= stamp &&
+           isAbsence(model_->finding(excess.track)) &&
+           (excess.component == component || upstream_->isUpstream(component, excess.component));
+  };
+  return (stamp > last && model_->overdue(id, stamp - last) > window.limits[id]) ||
+         std::any_of(window.excesses.begin(), window.excesses.end(), tells);
 }
 
 bool StoppedTogether::areUnrelated(const Ids& ids, const Heard& heard) const {
@@ -375,13 +386,17 @@ void StoppedTogether::addOff(const Acceptance& mode, const Ids& silent, const He
 
 void StoppedTogether::cover(const Ids& stopped, Excuse excuse, std::int64_t until,
                             const Window& window) const {
-  const std::set<std::size_t> components = componentsOf(stopped);
-  const std::int64_t stop = lastOf(stopped, window.heard);
+  std::map<std::size_t, std::int64_t> lasts;  // of their components [ns]
+  for (const EventId id : stopped) {
+    std::int64_t& last = lasts[model_->componentIndex(id)];
+    last = std::max(last, window.heard.stamps()[id]);
+  }
   const auto waitsForThem = [&](EventId id) {
-    const std::int64_t last = window.heard.stamps()[id];
-    return last <= until && stop - last <= kRateSpan + model_->longestGap(id) &&
-           std::any_of(components.begin(), components.end(), [&](std::size_t component) {
-             return upstream_->isUpstream(component, model_->componentIndex(id));
+    const std::int64_t heard = window.heard.stamps()[id];
+    return heard <= until && std::any_of(lasts.begin(), lasts.end(), [&](const auto& last) {
+             return upstream_->isUpstream(last.first, model_->componentIndex(id)) &&
+                    last.second - heard <= kRateSpan + model_->longestGap(id) &&
+                    !wasMissed(id, last.second, window);
            });
   };
   for (Excess& excess : window.excesses) {

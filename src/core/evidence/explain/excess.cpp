@@ -1,6 +1,6 @@
 #include "core/evidence/explain/excess.h"
 
-#include <optional>
+#include <algorithm>
 #include <utility>
 
 namespace self_awareness::core::evidence {
@@ -18,14 +18,18 @@ std::vector<Excess>& Excesses::closeWindow(const std::vector<double>& shares,
     while (before != excesses_.end() && before->track < track) {
       ++before;
     }
+    const std::int64_t end = scorer.heard().windowEnd();
+    const bool lasts = before != excesses_.end() && before->track == track;
+    Excess excess;
+    excess.track = track;
+    excess.component = model_->componentIndex(model_->tracks()[track].to);
     // A level does not know since when it has been so: since it was seen.
-    std::optional<std::int64_t> onset = scorer.onset(track);
-    if (!onset) {
-      onset = before != excesses_.end() && before->track == track ? before->onset
-                                                                  : scorer.heard().windowEnd();
+    excess.onset = scorer.onset(track).value_or(lasts ? before->onset : end);
+    excess.share = shares[track];
+    if (excess.share > 1) {
+      excess.abnormal = lasts ? std::min(before->abnormal, end) : end;
     }
-    now.push_back({track, model_->componentIndex(model_->tracks()[track].to), *onset,
-                   shares[track], Excuse::kNone});
+    now.push_back(excess);
   }
   excesses_ = std::move(now);
   return excesses_;

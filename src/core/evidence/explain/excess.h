@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,9 @@
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
+
+/// What has one cause shows within so long: what was there longer before is not why [ns].
+constexpr std::int64_t kOneCause = 5 * kRateSpan;
 
 /// Why no component is to blame for what is unusual.
 enum class Excuse {
@@ -20,6 +24,8 @@ enum class Excuse {
   kSlowerClock  ///< the simulation runs slower than in training
 };
 
+constexpr std::int64_t kNotYet = std::numeric_limits<std::int64_t>::max();
+
 /// That something is unusual: who, what, since when, how much (docs/method.md, section 6).
 struct Excess {
   std::size_t track = 0;      ///< of the model: its channel says what is wrong with its `to`
@@ -27,6 +33,8 @@ struct Excess {
   std::int64_t onset = 0;     ///< since when what the channel sees has been so [ns]
   double share = 0;           ///< of its limit; above 1, it alone is abnormal
   Excuse excuse = Excuse::kNone;
+  /// Since the end of which window its share has been above 1 [ns]; kNotYet: it is not.
+  std::int64_t abnormal = kNotYet;
 };
 
 /// Keeps what is unusual from one window to the next.

@@ -57,6 +57,16 @@ TEST_F(NewModeTest, WhoWasMissedWhenTheOthersCameLastDiedBeforeThem) {
   EXPECT_EQ(share(0), 0);
 }
 
+TEST_F(NewModeTest, WhoseVictimWasMissedBeforeTheOthersStoppedDiedBeforeThem) {
+  const std::vector<std::int64_t> ages{kAgo, kAgo + kSecond / 50, kAgo,
+                                       kAgo, kAgo + kSecond / 50, 0};
+  EXPECT_TRUE(excuse(ages));
+  beginAnew();
+  abnormal_[kSlam] = kEnd - kAgo - kMillisecond;
+  EXPECT_FALSE(excuse(ages)) << "the other three are too few";
+  EXPECT_EQ(share(1), 2);
+}
+
 TEST_F(NewModeTest, ThreeAreFaults) {
   EXPECT_FALSE(excuse({kAgo, kAgo, kAgo, 0, 0, 0}));
   EXPECT_EQ(share(0), 2);

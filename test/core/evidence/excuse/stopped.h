@@ -41,6 +41,10 @@ class StoppedTest : public testing::Test {
   /// Shares of what is excused become 0.
   StoppedTogether::Found excuseIn(const Scorer& scorer) {
     std::vector<Excess> excesses = excessesOf(model_, shares_, scorer);
+    for (Excess& excess : excesses) {
+      const auto abnormal = abnormal_.find(model_->tracks()[excess.track].to);
+      excess.abnormal = abnormal == abnormal_.end() ? kNotYet : abnormal->second;
+    }
     StoppedTogether::Found found =
         together_->excuse(excesses, allLimits(*model_, 1), scorer, strangers_, may_be_silent_);
     for (const Excess& excess : excesses) {
@@ -65,6 +69,7 @@ class StoppedTest : public testing::Test {
   std::map<std::string, std::int64_t> strangers_;
   std::vector<bool> may_be_silent_;
   std::vector<double> shares_;
+  std::map<EventId, std::int64_t> abnormal_;  // since when [ns]
 };
 
 }  // namespace self_awareness::core::evidence
