@@ -342,6 +342,7 @@ std::string Judge::evidenceOf(const Judgement& judgement) const {
 
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
   std::vector<Suspect> first = explanation_.suspects(*unusual_, scorer_, events_);
+  const std::int64_t began = first.empty() ? 0 : first.front().onset;
   who_sends_.addUnknown(window, first);
   who_sends_.dropMovers(first);
   std::vector<Suspect> second = never_heard_.suspects();
@@ -350,8 +351,11 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
   }
   std::vector<Suspect> named;
   const auto add = [&](const Suspect& suspect) {
-    if (std::none_of(named.begin(), named.end(),
-                     [&](const Suspect& other) { return other.id == suspect.id; })) {
+    const bool was_there = suspect.reason.kind == Kind::kStranger && suspect.onset > 0 &&
+                           suspect.onset < began - kOneCause;
+    const bool is_named = std::any_of(
+        named.begin(), named.end(), [&](const Suspect& other) { return other.id == suspect.id; });
+    if (!was_there && !is_named) {
       named.push_back(suspect);
     }
   };

@@ -466,6 +466,30 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStranger) {
   EXPECT_EQ(heard_->at(named[1].id).source, "/rostopic");
 }
 
+TEST_F(EvidenceJudgeOfStrangersTest, WhoWasThereLongBeforeIsNotNamed) {
+  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  const EventId known = heard_->intern({"/rostopic", "/y", "T"});
+  const EventId own = heard_->intern({"/extra", "/own", "T"});
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  std::vector<Suspect> named;
+  for (std::int64_t now = 0; now < 40 * kSecond; now += kWindow) {
+    Window window{now, {}};
+    for (const EventId id : {known, own}) {
+      window.events.push_back(*judge->add({now + kMillisecond, id}));
+    }
+    if (now < 30 * kSecond) {
+      judge->add({now + 2 * kMillisecond, kA});
+    }
+    judge->add({now + 3 * kMillisecond, kB});
+    named = judge->judge(window, now + kWindow, NameSuspects::kIfUnusual).suspects;
+  }
+  ASSERT_FALSE(named.empty());
+  EXPECT_EQ(named[0].id, kA);
+  for (const Suspect& suspect : named) {
+    EXPECT_NE(suspect.reason.kind, Kind::kStranger) << suspect.reason.words;
+  }
+}
+
 TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {
   limit(kOverdue, kA) = model_->overdue(kA, kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);

@@ -13,10 +13,6 @@ namespace {
 // comes and goes wherever more is begun at once than there are processors.
 constexpr double kNearlyAll = 0.9;
 
-// A load that grows makes one after the other late, and each of them now and then. Who was late
-// longer ago had another reason.
-constexpr std::int64_t kOnset = 5 * kRateSpan;  // [ns]
-
 /// Whether what a track says is that its type came late, or too seldom: who has no time does not
 /// send too often.
 bool isOfLate(std::size_t track, const Scorer& scorer, const RecentEvents& events) {
@@ -129,14 +125,14 @@ std::optional<Busy> BusyMachine::late(const std::vector<Excess>& excesses, const
   if (!busy_since_) {
     const auto middle = since.begin() + static_cast<std::ptrdiff_t>(since.size() / 2);
     std::nth_element(since.begin(), middle, since.end());
-    busy_since_ = *middle - kOnset;
+    busy_since_ = *middle - kOneCause;  // a load that grows makes one after the other late
   }
   busy.since = *busy_since_;
   return busy;
 }
 
 bool BusyMachine::isRecent(std::int64_t stamp, std::int64_t now) {
-  return stamp != kNever && now - stamp <= kOnset;
+  return stamp != kNever && now - stamp <= kOneCause;
 }
 
 void BusyMachine::noteLate(const std::vector<Excess>& excesses, const Scorer& scorer,

@@ -23,6 +23,8 @@ Suspect Strangers::unknownSuspect(EventId id, const Window& window) const {
   Suspect suspect;
   suspect.id = id;
   suspect.abnormal = true;
+  const auto sent = sent_.find(id);
+  suspect.onset = sent != sent_.end() ? sent->second.first : 0;
   const std::optional<Reason> news = news_.reasonOf(id);
   suspect.reason = news ? *news
                         : strangerIn(static_cast<std::size_t>(std::count_if(
@@ -75,7 +77,7 @@ bool Strangers::add(const Event& event, Accepted& accepted) {
     return false;
   }
   if (accepted.isAcceptedStranger(event.id)) {
-    last_.erase(event.id);
+    sent_.erase(event.id);
     return false;
   }
   const auto [known, is_new] = known_by_name_.try_emplace(event.id, false);
@@ -84,9 +86,13 @@ bool Strangers::add(const Event& event, Accepted& accepted) {
   }
   const bool is_news = !known->second && (!isUsualLine(event.id) || isFlood(event));
   if (is_news) {
-    last_[event.id] = event.stamp;
+    note(event);
   }
   return is_news;
+}
+
+void Strangers::note(const Event& event) {
+  sent_.try_emplace(event.id, Sent{event.stamp, 0}).first->second.last = event.stamp;
 }
 
 bool Strangers::isFlood(const Event& line) {
@@ -99,15 +105,15 @@ bool Strangers::isFlood(const Event& line) {
 
 void Strangers::addList(const Event& event, Accepted& accepted) {
   if (event.id < size_ || !news_.isNewList(event.id) || accepted.isAcceptedStranger(event.id)) {
-    last_.erase(event.id);
+    sent_.erase(event.id);
   } else {
-    last_[event.id] = event.stamp;
+    note(event);
   }
 }
 
 bool Strangers::anyList(std::int64_t now) const {
-  return std::any_of(last_.begin(), last_.end(), [&](const auto& last) {
-    return now - last.second <= kRateSpan && heard_ && heard_->tellsList(last.first);
+  return std::any_of(sent_.begin(), sent_.end(), [&](const auto& sent) {
+    return now - sent.second.last <= kRateSpan && heard_ && heard_->tellsList(sent.first);
   });
 }
 
@@ -131,11 +137,11 @@ bool Strangers::isUsualLine(EventId id) const {
 
 std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const {
   std::map<std::string, std::int64_t> silences;
-  for (const auto& [id, last] : last_) {
+  for (const auto& [id, sent] : sent_) {
     if (heard_ && id < heard_->size()) {
       std::int64_t& of_source =
-          silences.try_emplace(heard_->at(id).source, now - last).first->second;
-      of_source = std::min(of_source, now - last);
+          silences.try_emplace(heard_->at(id).source, now - sent.last).first->second;
+      of_source = std::min(of_source, now - sent.last);
     }
   }
   return silences;
@@ -144,8 +150,8 @@ std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const 
 std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& scorer,
                                          const Moved& moved) const {
   std::vector<Suspect> suspects;
-  for (const auto& [id, last] : last_) {
-    const std::int64_t age = scorer.heard().windowEnd() - last;
+  for (const auto& [id, sent] : sent_) {
+    const std::int64_t age = scorer.heard().windowEnd() - sent.last;
     if (age > kRateSpan || !isStranger(id) || moved.isPlaceOf(id)) {
       continue;
     }

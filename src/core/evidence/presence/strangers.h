@@ -46,7 +46,7 @@ class Strangers {
   void addUnknown(const Window& window, std::vector<Suspect>& suspects) const;
   /// Forgets who was heard: a new recording starts, or the clock was set.
   void restart() {
-    last_.clear();
+    sent_.clear();
     lines_.clear();
   }
   /// Time since somebody was heard who sends event types that the model does not know, by source
@@ -65,6 +65,14 @@ class Strangers {
   bool isUsualLine(EventId id) const;
   bool isFlood(const Event& line);
 
+  /// Takes note of an event of an unknown type.
+  void note(const Event& event);
+
+  /// When events of an unknown type came: stamps [ns].
+  struct Sent {
+    std::int64_t first = 0;
+    std::int64_t last = 0;
+  };
   /// Lines of a level that a sender never used.
   struct Lines {
     std::int64_t last = 0;     // stamp [ns]
@@ -81,7 +89,7 @@ class Strangers {
   News news_;
   std::map<EventId, bool> known_by_name_;  // unknown types that were looked at
   std::map<EventId, Lines> lines_;
-  std::map<EventId, std::int64_t> last_;  // stamp of the last event of an unknown type [ns]
+  std::map<EventId, Sent> sent_;  // of unknown types
 };
 
 }  // namespace self_awareness::core::evidence
