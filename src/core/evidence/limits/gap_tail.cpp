@@ -20,14 +20,18 @@ GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, do
   if (number > 0) {
     samples_ = std::min(number, most_samples) + prior;
     const double seen = std::accumulate(longest_gaps.begin(), end, 0.0) - number * shortest_;
-    excess_ = (seen + std::max(cut_off - (shortest_ - usual), 0.0)) * samples_ / number;
+    excess_ = (seen + std::max(cut_off - (shortest_ - usual), 0.0)) / number;
   }
 }
 
 double GapTail::age(double rate) const {
-  return samples_ > 0
-             ? shortest_ + excess_ * (std::pow(std::max(all_ / rate, 1.0), 1 / samples_) - 1)
-             : shortest_;
+  if (samples_ <= 0) {
+    return shortest_;
+  }
+  const double rarer = std::max(all_ / rate, 1.0);
+  return shortest_ + excess_ * (std::isinf(samples_)
+                                    ? std::log(rarer)
+                                    : samples_ * (std::pow(rarer, 1 / samples_) - 1));
 }
 
 }  // namespace self_awareness::core::evidence

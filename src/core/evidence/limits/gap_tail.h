@@ -16,7 +16,8 @@ class GapTail {
   /// @param usual gaps are no longer than this [ns]
   /// @param cut_off what silences beyond usual gaps took that recordings cut off [ns]
   /// @param most_samples of what the next gaps will be: the gaps of one start are as one
-  /// @param prior so many samples of the same mean are believed to have been seen besides
+  /// @param prior so many samples of the same mean are believed to have been seen besides;
+  /// infinity: the excess is exponential
   GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual,
           double cut_off, double most_samples, double prior);
 
@@ -27,7 +28,7 @@ class GapTail {
  private:
   double shortest_ = 0;  // of the longest gaps, but more than the usual ones [ns]
   double samples_ = 0;   // that say how much longer gaps get
-  double excess_ = 0;    // of them all over it [ns]
+  double excess_ = 0;    // mean of theirs over it [ns]
   double all_ = 0;       // gaps an hour from there on
 };
 

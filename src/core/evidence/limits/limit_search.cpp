@@ -18,6 +18,8 @@ namespace {
 constexpr double kHour = 3600e9;  // [ns]
 // What one of three starts shows alone may be what the robot does at times.
 constexpr std::size_t kFewestThatAgree = 5;
+// Who has no longer gap than such a share of those that chance makes is a timer.
+constexpr double kFarFromChance = 1.0 / 3;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double hoursOf(std::uint64_t windows, std::int64_t window) {
@@ -352,7 +354,13 @@ GapTail LimitSearch::tailOf(Statistics::Type gaps, std::size_t track, double sta
       std::min(gaps.longest_gaps.size(), static_cast<std::size_t>(tuning_.pauses)));
   const double usual = tuning_.regular * model_.meanGap(id);
   const double cut_off = HeadsAndTails(model_.statistics(), id, tuning_).all();
-  return {gaps.longest_gaps, sumOf(with_gaps_), usual, cut_off, starts, tuning_.prior_pauses};
+  // Messages of a timer are lost, or late, each by itself. Chance alone makes gaps of log(n) mean
+  // gaps.
+  const double by_chance = std::log(static_cast<double>(gaps.gaps));
+  const bool pauses =
+      static_cast<double>(gaps.longestGap()) > kFarFromChance * by_chance * model_.meanGap(id);
+  const double prior = pauses ? tuning_.prior_pauses : std::numeric_limits<double>::infinity();
+  return {gaps.longest_gaps, sumOf(with_gaps_), usual, cut_off, starts, prior};
 }
 
 }  // namespace self_awareness::core::evidence

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "core/evidence/limits/gap_tail.h"
@@ -142,7 +143,7 @@ TEST(GapTail, IsWhatFewPausesLetExpect) {
 }
 
 TEST(GapTail, IsExponentialWhereManyPausesAreBelieved) {
-  const GapTail tail({30, 20, 10, 5}, 2, 10, 0, 9, 1e6);
+  const GapTail tail({30, 20, 10, 5}, 2, 10, 0, 9, std::numeric_limits<double>::infinity());
   EXPECT_NEAR(tail.age(std::exp(-1)), 25, 1e-4);
 }
 

@@ -232,6 +232,18 @@ TEST_F(LimitFinderTest, WhereSomeTimersLoseMessagesAllMayLoseOne) {
   EXPECT_LT(silence_of_a(5), model_->overdue(kA, 1900 * kMillisecond)) << "a hole is no loss";
 }
 
+TEST_F(LimitFinderTest, ATimerThatLosesSingleMessagesHasNoLongTail) {
+  const Events loses =
+      without(timer(kA, 0, 200 * kSecond, 100 * kMillisecond), [](const Event& event) {
+        return event.stamp == 80 * kSecond || event.stamp == 160 * kSecond;
+      });
+  model_ = modelOf(loses, later(loses));
+  const Limits limits = limitsOf(model_, later(loses, 2 * kStart));
+  const double found_after = toSeconds(model_->ageBeyond(kA, limit(limits, kOverdue, kA, kA)));
+  EXPECT_GT(found_after, 0.35) << "two in a row are normal, too";
+  EXPECT_LT(found_after, 0.6);
+}
+
 TEST_F(LimitFinderTest, LossesThatAreRareForSoManyMessagesAreNone) {
   // One of 40,000 messages of B is lost, and a budget that allows it.
   const std::int64_t length = 8000 * kSecond;
