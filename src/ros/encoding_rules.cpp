@@ -87,6 +87,7 @@ EncodingRules EncodingRules::defaults() {
   rules.type_fields = {{"actionlib_msgs/GoalStatus", "status"},
                        {"diagnostic_msgs/DiagnosticArray", "status.level"},
                        {"rosgraph_msgs/Log", "level"},
+                       {"sensor_msgs/JointState", "name"},
                        {"tf/tfMessage", "transforms.child_frame_id"},
                        {"tf2_msgs/TFMessage", "transforms.child_frame_id"},
                        {"visualization_msgs/Marker", "action"}};

@@ -13,8 +13,11 @@ ListedField::ListedField(std::string path, MessageDefinition::ListField field)
 
 std::optional<core::Listed> ListedField::next(const std::uint8_t* data, std::size_t size,
                                               std::int64_t stamp) {
-  std::set<std::string> values = read(data, size);
   const bool is_told = told_ && stamp >= *told_ && stamp - *told_ < kAgain;
+  if (isAsBefore(data, size) && is_told) {
+    return std::nullopt;
+  }
+  std::set<std::string> values = read(data, size);
   // An empty array says nothing of what else there is.
   if (values.empty() || (is_told && values == last_)) {
     return std::nullopt;
@@ -28,29 +31,50 @@ std::optional<core::Listed> ListedField::next(const std::uint8_t* data, std::siz
                       lists_.size() > kMostLists ? std::set<std::string>() : std::move(values)};
 }
 
-std::set<std::string> ListedField::read(const std::uint8_t* data, std::size_t size) const {
+template <typename Use>
+void ListedField::forEach(const std::uint8_t* data, std::size_t size, const Use& use) const {
   const auto pass = [](std::string_view /*passed*/) {};
   MessageCursor cursor(data, size);
   cursor.cross(field_.before, pass);
   const std::uint64_t length = field_.length ? *field_.length : cursor.number<std::uint32_t>();
-  std::set<std::string> values;
-  std::optional<double> largest;  // of numbers
   for (std::uint64_t i = 0; i < length && !field_.element.empty(); ++i) {
     MessageCursor element = cursor;
     cursor.cross(field_.element, pass);
     element.cross(field_.field.before, pass);
-    if (field_.field.type == "string") {
-      values.insert(textOf(field_.field.type, element));
-      continue;
+    use(field_.field.type, element);
+  }
+}
+
+std::set<std::string> ListedField::read(const std::uint8_t* data, std::size_t size) const {
+  std::set<std::string> values;
+  std::optional<double> largest;  // of numbers
+  forEach(data, size, [&](const std::string& type, MessageCursor& element) {
+    if (type == "string") {
+      values.insert(textOf(type, element));
+      return;
     }
-    withNumber(field_.field.type, element, [&](auto number) {
+    withNumber(type, element, [&](auto number) {
       if (!largest || static_cast<double>(number) > *largest) {
         largest = static_cast<double>(number);
         values = {std::to_string(number)};
       }
     });
-  }
+  });
   return values;
+}
+
+bool ListedField::isAsBefore(const std::uint8_t* data, std::size_t size) {
+  std::swap(texts_, texts_before_);
+  texts_.clear();
+  forEach(data, size, [&](const std::string& type, MessageCursor& element) {
+    if (type == "string") {
+      texts_ += element.string();
+    } else {
+      withNumber(type, element, [&](auto number) { texts_ += std::to_string(number); });
+    }
+    texts_ += '\0';
+  });
+  return texts_ == texts_before_;
 }
 
 }  // namespace self_awareness::ros1

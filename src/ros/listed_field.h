@@ -31,10 +31,17 @@ class ListedField {
   std::optional<core::Listed> next(const std::uint8_t* data, std::size_t size, std::int64_t stamp);
 
  private:
+  /// Calls use() with the type of each element's field, and a cursor that is at it.
+  template <typename Use>
+  void forEach(const std::uint8_t* data, std::size_t size, const Use& use) const;
   std::set<std::string> read(const std::uint8_t* data, std::size_t size) const;
+  /// Whether a message lists the same in the same order as the one before: most do.
+  bool isAsBefore(const std::uint8_t* data, std::size_t size);
 
   std::string path_;
   MessageDefinition::ListField field_;
+  std::string texts_;         // of the last message
+  std::string texts_before_;  // of the one before
   std::set<std::string> last_;
   std::optional<std::int64_t> told_;  // when [ns]
   std::set<std::set<std::string>> lists_;

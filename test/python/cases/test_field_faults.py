@@ -14,13 +14,16 @@ def test_old_stamps_of_transforms_are_found(cases, scored, tmp_path: Path) -> No
     assert 50.0 < alarm['begin_s'] < 52.0
 
 
-def test_a_transform_that_is_missing_and_a_first_error_are_told(of_its_own_robot) -> None:
+def test_a_transform_or_joint_that_is_missing_and_a_first_error_are_told(
+        of_its_own_robot) -> None:
     """Of 1, "lacks one of its eight transforms"; of 3, the first ERROR on /diagnostics."""
     make = Path(__file__).parent / 'robot_that_lists.py'
-    lacking, failing = of_its_own_robot(make, 'lacking.bag', 'failing.bag')
+    lacking, jointless, failing = of_its_own_robot(make, 'lacking.bag', 'jointless.bag',
+                                                   'failing.bag')
     for recording, cause, said in (
             (lacking, '/robot_state_publisher',
              '/tf without laser (transforms.child_frame_id)'),
+            (jointless, '/base_driver', '/joint_states without r (name)'),
             (failing, '/gps', '/diagnostics with status.level=2')):
         incident, = recording['incidents']
         assert (incident['cause'], incident['level']) == (cause, 'WARN'), 'its messages come'

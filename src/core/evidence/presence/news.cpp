@@ -45,7 +45,7 @@ std::string difference(const Listed& list, const std::vector<std::set<std::strin
   }
   const std::vector<std::string> missing = without(each, list.values);
   const std::vector<std::string> added = without(list.values, any);
-  if (!missing.empty() && list.values.size() > 1) {
+  if (!missing.empty() && (added.empty() || list.values.size() > 1)) {
     return "without " + listed(missing, kMostNamed) + " (" + list.field + ")";
   }
   if (!added.empty()) {
