@@ -14,7 +14,8 @@ ListedField::ListedField(std::string path, MessageDefinition::ListField field)
 std::optional<core::Listed> ListedField::next(const std::uint8_t* data, std::size_t size,
                                               std::int64_t stamp) {
   const bool is_told = told_ && stamp >= *told_ && stamp - *told_ < kAgain;
-  if (isAsBefore(data, size) && is_told) {
+  const bool is_as_before = isAsBefore(data, size);
+  if (is_as_before && is_told) {
     return std::nullopt;
   }
   std::set<std::string> values = read(data, size);

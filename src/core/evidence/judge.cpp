@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -342,8 +343,10 @@ std::string Judge::evidenceOf(const Judgement& judgement) const {
 
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
   std::vector<Suspect> first = explanation_.suspects(*unusual_, scorer_, events_);
-  const std::int64_t began = first.empty() ? 0 : first.front().onset;
-  who_sends_.addUnknown(window, first);
+  // Who was there long before is not why something is unusual now.
+  const std::int64_t since =
+      first.empty() ? std::numeric_limits<std::int64_t>::min() : first.front().onset - kOneCause;
+  who_sends_.addUnknown(window, since, first);
   who_sends_.dropMovers(first);
   std::vector<Suspect> second = never_heard_.suspects();
   if (!silent_first || (!first.empty() && never_heard_.isMissedBy(first.front().id))) {
@@ -351,11 +354,8 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
   }
   std::vector<Suspect> named;
   const auto add = [&](const Suspect& suspect) {
-    const bool was_there = suspect.reason.kind == Kind::kStranger && suspect.onset > 0 &&
-                           suspect.onset < began - kOneCause;
-    const bool is_named = std::any_of(
-        named.begin(), named.end(), [&](const Suspect& other) { return other.id == suspect.id; });
-    if (!was_there && !is_named) {
+    if (std::none_of(named.begin(), named.end(),
+                     [&](const Suspect& other) { return other.id == suspect.id; })) {
       named.push_back(suspect);
     }
   };
@@ -366,11 +366,11 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
                   [&](const Suspect& suspect) { return suspect.abnormal && died(suspect); })) {
     add(first.front());
   }
-  const std::vector<Suspect> causes = who_sends_.causes(window, scorer_);
+  const std::vector<Suspect> causes = who_sends_.causes(window, scorer_, since);
   std::for_each(causes.begin(), causes.end(), add);
   // Who does not subscribe says what it always says: that explains nothing beyond a limit.
   const std::vector<Suspect>& deaf = unsubscribed_.suspects();
-  const std::vector<Suspect> strangers = who_sends_.strangers(window, scorer_);
+  const std::vector<Suspect> strangers = who_sends_.strangers(window, scorer_, since);
   const std::vector<Suspect> moved = who_sends_.movers();
   using Order = std::array<const std::vector<Suspect>*, 5>;
   const Order order = silent_first ? Order{&first, &second, &strangers, &deaf, &moved}

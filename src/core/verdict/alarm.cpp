@@ -33,6 +33,11 @@ std::vector<Suspect> withComponents(std::vector<Suspect> suspects, const Vocabul
 }
 
 void blame(const Suspect& suspect, Alarm& alarm) {
+  for (std::vector<Suspect>* named : {&alarm.suspects, &alarm.later}) {
+    for (Suspect& each : *named) {
+      each.onset = each.component == suspect.component ? suspect.onset : each.onset;
+    }
+  }
   alarm.culprit = suspect.component;
   alarm.reason = suspect.reason.words;
   alarm.kind = suspect.reason.kind;
@@ -40,12 +45,15 @@ void blame(const Suspect& suspect, Alarm& alarm) {
   alarm.waiting.clear();
 }
 
-/// Whether somebody is to blame rather than the culprit: what is wrong with it began before.
-bool beganEarlier(const Suspect& first, const Suspect& culprit) {
+/// Whether somebody is to blame rather than the culprit: it was missed before, or the culprit does
+/// not come since what it waits for was unusual before.
+/// @param is_named whether the culprit still is
+bool beganEarlier(const Suspect& first, const Suspect& culprit, bool is_named) {
   if (isAbsence(first.reason.kind)) {
     return first.missed > 0 && first.missed < culprit.onset;
   }
-  return first.component != culprit.component && first.onset > 0 && first.onset < culprit.onset;
+  return is_named && isAbsence(culprit.reason.kind) && first.reason.kind != Kind::kStranger &&
+         first.component != culprit.component && first.onset > 0 && first.onset < culprit.onset;
 }
 
 /// Takes in that a culprit has an excuse, that who is dead has none any more, or that who is named
@@ -57,17 +65,19 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
                                   (alarm.kind == Kind::kNewMode && !verdict.silent) ||
                                   alarm.kind == Kind::kSlowerClock;  // which nobody is silent for
   const Suspect* culprit = alarm.suspectToBlame();
+  const auto isNamed = [&] {
+    return std::any_of(suspects.begin(), suspects.end(),
+                       [&](const Suspect& suspect) { return suspect.component == alarm.culprit; });
+  };
   if (!suspects.empty() && suspects.front().abnormal) {
     const Suspect& first = suspects.front();
     if ((is_excused_no_more && isAbsence(first.reason.kind)) ||
-        (culprit != nullptr && beganEarlier(first, *culprit))) {
+        (culprit != nullptr && beganEarlier(first, *culprit, isNamed()))) {
       blame(first, alarm);
       culprit = alarm.suspectToBlame();
     }
   }
-  const bool is_named = std::any_of(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
-    return suspect.component == alarm.culprit;
-  });
+  const bool is_named = isNamed();
   const bool nobody = alarm.culprit.empty() && alarm.kind != Kind::kAllSilent;
   const std::int64_t began = culprit != nullptr ? culprit->onset : alarm.begin;
   if (verdict.busy && verdict.busy->since <= began && (culprit != nullptr ? !is_named : nobody)) {

@@ -466,28 +466,38 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStranger) {
   EXPECT_EQ(heard_->at(named[1].id).source, "/rostopic");
 }
 
-TEST_F(EvidenceJudgeOfStrangersTest, WhoWasThereLongBeforeIsNotNamed) {
+TEST_F(EvidenceJudgeOfStrangersTest, WhoWasThereLongBeforeIsNotNamedUnlessItComesBack) {
   limit(kOverdue, kA) = model_->overdue(kA, kSecond);
-  const EventId known = heard_->intern({"/rostopic", "/y", "T"});
-  const EventId own = heard_->intern({"/extra", "/own", "T"});
-  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
-  std::vector<Suspect> named;
-  for (std::int64_t now = 0; now < 40 * kSecond; now += kWindow) {
-    Window window{now, {}};
-    for (const EventId id : {known, own}) {
-      window.events.push_back(*judge->add({now + kMillisecond, id}));
+  const std::vector<EventId> strangers{heard_->intern({"/rostopic", "/y", "T"}),
+                                       heard_->intern({"/extra", "/own", "T"})};
+  const auto named = [&](bool with_pause) {
+    const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+    std::vector<Suspect> suspects;
+    for (std::int64_t now = 0; now < 40 * kSecond; now += kWindow) {
+      Window window{now, {}};
+      for (const EventId id : strangers) {
+        if (!with_pause || now < 10 * kSecond || now > 28 * kSecond) {
+          window.events.push_back(*judge->add({now + kMillisecond, id}));
+        }
+      }
+      if (now < 30 * kSecond) {
+        judge->add({now + 2 * kMillisecond, kA});
+      }
+      judge->add({now + 3 * kMillisecond, kB});
+      suspects = judge->judge(window, now + kWindow, NameSuspects::kIfUnusual).suspects;
     }
-    if (now < 30 * kSecond) {
-      judge->add({now + 2 * kMillisecond, kA});
-    }
-    judge->add({now + 3 * kMillisecond, kB});
-    named = judge->judge(window, now + kWindow, NameSuspects::kIfUnusual).suspects;
-  }
-  ASSERT_FALSE(named.empty());
-  EXPECT_EQ(named[0].id, kA);
-  for (const Suspect& suspect : named) {
+    return suspects;
+  };
+  const std::vector<Suspect> without = named(false);
+  ASSERT_FALSE(without.empty());
+  EXPECT_EQ(without[0].id, kA);
+  for (const Suspect& suspect : without) {
     EXPECT_NE(suspect.reason.kind, Kind::kStranger) << suspect.reason.words;
   }
+  const std::vector<Suspect> with = named(true);
+  ASSERT_EQ(with.size(), without.size() + strangers.size());
+  EXPECT_EQ(with[0].id, kA) << "who died comes first";
+  EXPECT_EQ(with[1].reason.kind, Kind::kStranger);
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {

@@ -277,6 +277,12 @@ TEST_F(AlarmsTest, WhoSlowedDownBeforeItsFollowerFellSilentIsToBlame) {
   slow.onset = failed - 10 * kWindow;
   add(verdict(kAlarm, {silentSince(0, failed), slow}));
   expectBlamed("/a", Kind::kSilent);  // nor is it first
+  add(verdict(kAlarm, {slow}));
+  expectBlamed("/a", Kind::kSilent);  // who is back did fail, whatever is left of its victims
+  Suspect stranger = slow;
+  stranger.reason.kind = Kind::kStranger;
+  add(verdict(kAlarm, {stranger, silentSince(0, failed)}));
+  expectBlamed("/a", Kind::kSilent);  // who was there before is not why
   add(verdict(kAlarm, {slow, silentSince(0, failed)}));
   expectBlamed("/b", Kind::kSlow);
 }

@@ -14,9 +14,10 @@
 
 namespace self_awareness::core {
 
-/// A stretch of time in which the alarm stood, or a suspicion: when, who, and why. It keeps its id
-/// and its culprit, whoever is named later; only if the machine turns out to be busy, or everybody
-/// (on the culprit's computer) silent, there is no culprit any more.
+/// A stretch of time in which the alarm stood, or a suspicion: when, who, and why. It keeps its
+/// id. It keeps its culprit, whoever is named later, unless what is wrong with that one began
+/// before; if the machine turns out to be busy, or everybody (on the culprit's computer) silent,
+/// there is no culprit any more.
 struct Alarm {
   /// How sure it is: WARN or ERROR in diagnostics.
   enum class Level { kSuspicion, kAlarm };

@@ -36,7 +36,7 @@ struct AgeOfMessages {
     before = last;
     if (arrival.attributes.hasAge()) {
       age = ageOf(arrival.attributes.age);
-      last = level.add(arrival.stamp, age, usual.shortest, most);
+      last = level.add(arrival.stamp, age, {usual.shortest, usual.longest}, most);
     } else {
       age = Reason::kNone;
       last = kWithoutStamp;

@@ -80,9 +80,11 @@ class ExpectedShares : public Expectation {
     numbers_of_.resize(model.size());
     for (const Topic& topic : topicsIn(model.learned())) {
       double an_hour = 0;
+      std::int64_t pause = std::numeric_limits<std::int64_t>::max();
       for (const EventId id : topic.ids) {
-        const double gap = model.learned().type(id).gaps > 0 ? model.meanGap(id) : kHour;
-        an_hour += kHour / std::max(gap, 1.0);
+        const bool is_known = model.learned().type(id).gaps > 0;
+        an_hour += kHour / std::max(is_known ? model.meanGap(id) : kHour, 1.0);
+        pause = is_known ? std::min(pause, model.longestGap(id)) : pause;
       }
       for (std::size_t number = 0; number < this->tracks().size(); ++number) {
         const EventId of_track = model.tracks()[this->tracks()[number]].to;
@@ -95,8 +97,7 @@ class ExpectedShares : public Expectation {
         usual.more = std::log(often / usual.share);
         usual.less = std::log((1 - usual.share) / (1 - often));
         usual.least_limit = std::max(std::log(an_hour / kByChance), model.tuning().least_pace);
-        usual.pause = std::max(
-            kRateSpan, static_cast<std::int64_t>(model.tuning().most_mean_gaps * kHour / an_hour));
+        usual.pause = std::max(kRateSpan, pause);
         for (const EventId id : topic.ids) {
           numbers_of_[id].push_back(number);
         }

@@ -19,7 +19,7 @@ constexpr double kSpanOfAge = 0.2;
 
 }  // namespace
 
-double AgeLevel::add(std::int64_t now, double age, double usual, double most) {
+double AgeLevel::add(std::int64_t now, double age, const UsualAges& usual, double most) {
   const std::int64_t span = std::max(kSpan, toNanoseconds(kSpanOfAge * std::abs(age)));
   if (!begun_ || now - begin_ >= span) {
     const bool says_nothing = youngest_ == kNone && most < kNone;
@@ -33,14 +33,16 @@ double AgeLevel::add(std::int64_t now, double age, double usual, double most) {
     begun_ = true;
   }
   const double known = std::min(youngest_, before_);
-  if (age < std::min(usual, 0.0) && known < kNone &&
+  if (age < std::min(usual.youngest, 0.0) && known < kNone &&
       known - age > kAhead + kClassAhead * std::abs(known)) {
     return known - age;
   }
   const double level = std::min(known, age);
   const double older =
       std::max(age - level - (level < 0 ? kClassBack : kClass) * std::abs(level), 0.0);
-  youngest_ = older > most ? youngest_ : std::min(youngest_, age);
+  if (older <= most || age <= usual.oldest) {
+    youngest_ = std::min(youngest_, age);
+  }
   return older;
 }
 

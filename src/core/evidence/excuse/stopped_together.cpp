@@ -45,7 +45,8 @@ StoppedTogether::Found StoppedTogether::excuse(
                    [](const Excess& excess) { return excess.share > 1; })) {
     return found;
   }
-  const Window window{limitsOfSilence(limits), scorer.heard(), excesses};
+  const Window window{limitsOfSilence(limits), scorer.heard(), excesses,
+                      missedBy(scorer.heard(), excesses)};
   found.silent = everything(window, strangers);
   if (found.silent) {
     for (Excess& excess : excesses) {
@@ -312,17 +313,31 @@ StoppedTogether::Ids StoppedTogether::stoppedWith(EventId id, const Ids& silent,
   return together;
 }
 
+std::vector<std::int64_t> StoppedTogether::missedBy(const Heard& heard,
+                                                    const std::vector<Excess>& excesses) const {
+  std::vector<std::int64_t> missed(model_->size(), kNotYet);
+  for (const Excess& excess : excesses) {
+    if (excess.abnormal == kNotYet || !isAbsence(model_->finding(excess.track))) {
+      continue;
+    }
+    const std::int64_t usual = kRateSpan + model_->longestGap(trackOf(excess).to);
+    for (EventId id = 0; id < model_->size(); ++id) {
+      const std::int64_t last = heard.stamps()[id];
+      const std::size_t component = model_->componentIndex(id);
+      // Who fell silent long before it was heard last does not wait for it.
+      if (heard.hasSeen(id) && last < excess.abnormal && last - excess.onset <= usual &&
+          (component == excess.component || upstream_->isUpstream(component, excess.component))) {
+        missed[id] = std::min(missed[id], excess.abnormal);
+      }
+    }
+  }
+  return missed;
+}
+
 bool StoppedTogether::wasMissed(EventId id, std::int64_t stamp, const Window& window) const {
-  const std::int64_t last = window.heard.stamps()[id];
-  const std::size_t component = model_->componentIndex(id);
-  // Who waits for it may have told so first.
-  const auto tells = [&](const Excess& excess) {
-    return last < excess.abnormal && excess.abnormal <= stamp &&
-           isAbsence(model_->finding(excess.track)) &&
-           (excess.component == component || upstream_->isUpstream(component, excess.component));
-  };
-  return (stamp > last && model_->overdue(id, stamp - last) > window.limits[id]) ||
-         std::any_of(window.excesses.begin(), window.excesses.end(), tells);
+  const std::int64_t silence = stamp - window.heard.stamps()[id];
+  return silence > 0 &&
+         (window.missed[id] <= stamp || model_->overdue(id, silence) > window.limits[id]);
 }
 
 bool StoppedTogether::areUnrelated(const Ids& ids, const Heard& heard) const {

@@ -68,6 +68,7 @@ class StoppedTogether {
     std::vector<double> limits;  // of silence, by id; NaN: it is not judged
     const Heard& heard;
     std::vector<Excess>& excesses;
+    std::vector<std::int64_t> missed;  // missedBy(), by id
   };
 
   std::vector<double> limitsOfSilence(const Limits& limits) const;
@@ -92,8 +93,11 @@ class StoppedTogether {
   std::set<EventId> stopped(const Ids& silent, const Window& window);
   /// Those of them that stopped when this one did: none was missed when the other one came last.
   Ids stoppedWith(EventId id, const Ids& silent, const Window& window) const;
-  /// Whether who was not heard since was beyond its limit at a stamp [ns], or its component was
-  /// missed by then.
+  /// When, by id, it was first told of its component since its last event that something of it
+  /// does not come, or by who waits for it [ns]; kNotYet: it was not.
+  std::vector<std::int64_t> missedBy(const Heard& heard,
+                                     const std::vector<Excess>& excesses) const;
+  /// Whether who was not heard since was beyond its limit at a stamp [ns], or missed by then.
   bool wasMissed(EventId id, std::int64_t stamp, const Window& window) const;
   /// What stopped together, for each that is beyond its limit; most at once come first.
   std::vector<Ids> groups(const Ids& silent, const Window& window) const;
@@ -105,8 +109,8 @@ class StoppedTogether {
   /// early to miss all of them. Who died alone is not off: the others were heard since.
   void addOff(const Acceptance& mode, const Ids& silent, const Heard& heard,
               std::set<EventId>& off) const;
-  /// Excuses them, and who hears one of them, was not missed before that stopped, and was not heard
-  /// later than `until` [ns]: who goes on does not wait for them.
+  /// Excuses them, and who hears one of them, was not missed before that one stopped, and was not
+  /// heard later than `until` [ns]: who goes on does not wait for them.
   void cover(const Ids& stopped, Excuse excuse, std::int64_t until, const Window& window) const;
 
   std::shared_ptr<const Model> model_;

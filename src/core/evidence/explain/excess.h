@@ -11,9 +11,6 @@
 
 namespace self_awareness::core::evidence {
 
-/// What has one cause shows within so long: what was there longer before is not why [ns].
-constexpr std::int64_t kOneCause = 5 * kRateSpan;
-
 /// Why no component is to blame for what is unusual.
 enum class Excuse {
   kNone,

@@ -18,7 +18,7 @@ namespace {
 constexpr double kHour = 3600e9;  // [ns]
 // What one of three starts shows alone may be what the robot does at times.
 constexpr std::size_t kFewestThatAgree = 5;
-// Who has no longer gap than such a share of those that chance makes is a timer.
+// A type whose longest gap is below this share of the longest that chance would make is a timer.
 constexpr double kFarFromChance = 1.0 / 3;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -357,9 +357,9 @@ GapTail LimitSearch::tailOf(Statistics::Type gaps, std::size_t track, double sta
   // Messages of a timer are lost, or late, each by itself. Chance alone makes gaps of log(n) mean
   // gaps.
   const double by_chance = std::log(static_cast<double>(gaps.gaps));
-  const bool pauses =
+  const bool has_pauses =
       static_cast<double>(gaps.longestGap()) > kFarFromChance * by_chance * model_.meanGap(id);
-  const double prior = pauses ? tuning_.prior_pauses : std::numeric_limits<double>::infinity();
+  const double prior = has_pauses ? tuning_.prior_pauses : std::numeric_limits<double>::infinity();
   return {gaps.longest_gaps, sumOf(with_gaps_), usual, cut_off, starts, prior};
 }
 

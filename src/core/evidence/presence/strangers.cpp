@@ -33,10 +33,11 @@ Suspect Strangers::unknownSuspect(EventId id, const Window& window) const {
   return suspect;
 }
 
-void Strangers::addUnknown(const Window& window, std::vector<Suspect>& suspects) const {
+void Strangers::addUnknown(const Window& window, std::int64_t since,
+                           std::vector<Suspect>& suspects) const {
   for (const ObservedEvent& observed : window.events) {
     const EventId id = observed.event.id;
-    if (observed.unknown && suspects.size() < kMostSuspects &&
+    if (observed.unknown && suspects.size() < kMostSuspects && !wasThere(id, since) &&
         std::none_of(suspects.begin(), suspects.end(),
                      [id](const Suspect& other) { return other.id == id; })) {
       suspects.push_back(unknownSuspect(id, window));
@@ -92,7 +93,14 @@ bool Strangers::add(const Event& event, Accepted& accepted) {
 }
 
 void Strangers::note(const Event& event) {
-  sent_.try_emplace(event.id, Sent{event.stamp, 0}).first->second.last = event.stamp;
+  Sent& sent = sent_.try_emplace(event.id, Sent{event.stamp, event.stamp}).first->second;
+  sent.first = event.stamp - sent.last > kOneCause ? event.stamp : sent.first;
+  sent.last = event.stamp;
+}
+
+bool Strangers::wasThere(EventId id, std::int64_t stamp) const {
+  const auto sent = sent_.find(id);
+  return sent != sent_.end() && sent->second.first < stamp;
 }
 
 bool Strangers::isFlood(const Event& line) {
@@ -148,11 +156,11 @@ std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const 
 }
 
 std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& scorer,
-                                         const Moved& moved) const {
+                                         const Moved& moved, std::int64_t since) const {
   std::vector<Suspect> suspects;
   for (const auto& [id, sent] : sent_) {
     const std::int64_t age = scorer.heard().windowEnd() - sent.last;
-    if (age > kRateSpan || !isStranger(id) || moved.isPlaceOf(id)) {
+    if (age > kRateSpan || sent.first < since || !isStranger(id) || moved.isPlaceOf(id)) {
       continue;
     }
     Suspect suspect = unknownSuspect(id, window);

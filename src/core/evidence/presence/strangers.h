@@ -43,7 +43,8 @@ class Strangers {
   bool anyList(std::int64_t now) const;
   /// Adds the unknown event types of a window that are not among its suspects yet, as long as
   /// these are fewer than kMostSuspects.
-  void addUnknown(const Window& window, std::vector<Suspect>& suspects) const;
+  /// @param since those that were there before are left out [ns]
+  void addUnknown(const Window& window, std::int64_t since, std::vector<Suspect>& suspects) const;
   /// Forgets who was heard: a new recording starts, or the clock was set.
   void restart() {
     sent_.clear();
@@ -54,8 +55,9 @@ class Strangers {
   std::map<std::string, std::int64_t> silences(std::int64_t now) const;
   /// Those that were heard in the last kRateSpan, without those that have the place of others.
   /// @param scorer of the same recording, at the end of the window
-  std::vector<Suspect> suspects(const Window& window, const Scorer& scorer,
-                                const Moved& moved) const;
+  /// @param since as addUnknown()
+  std::vector<Suspect> suspects(const Window& window, const Scorer& scorer, const Moved& moved,
+                                std::int64_t since) const;
 
  private:
   /// An event type that training never saw, as a suspect of a window.
@@ -67,10 +69,12 @@ class Strangers {
 
   /// Takes note of an event of an unknown type.
   void note(const Event& event);
+  /// Whether an unknown type came before a stamp [ns] already, without a pause of kOneCause since.
+  bool wasThere(EventId id, std::int64_t stamp) const;
 
   /// When events of an unknown type came: stamps [ns].
   struct Sent {
-    std::int64_t first = 0;
+    std::int64_t first = 0;  // since a pause of kOneCause
     std::int64_t last = 0;
   };
   /// Lines of a level that a sender never used.

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <utility>
 
 namespace self_awareness::core::evidence {
 namespace {
+
+constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::min();
 
 void append(const std::vector<Suspect>& suspects, std::vector<Suspect>& all) {
   all.insert(all.end(), suspects.begin(), suspects.end());
@@ -71,10 +74,11 @@ std::set<std::string> WhoSends::evidence() const {
   return evidence;
 }
 
-std::vector<Suspect> WhoSends::causes(const Window& window, const Scorer& scorer) const {
+std::vector<Suspect> WhoSends::causes(const Window& window, const Scorer& scorer,
+                                      std::int64_t since) const {
   std::vector<Suspect> causes = two_senders_.suspects(scorer.heard());
   append(players_.suspects(), causes);
-  for (const Suspect& stranger : strangers(window, scorer)) {
+  for (const Suspect& stranger : strangers(window, scorer, since)) {
     if (stranger.reason.topics.empty()) {  // else one that is known, and says something new
       causes.push_back(stranger);
       break;
@@ -96,9 +100,9 @@ std::vector<Suspect> WhoSends::alone(const Window& window, const Scorer& scorer,
   std::vector<Suspect> named = two_senders_.suspects(scorer.heard());
   append(players_.suspects(), named);
   append(moved_.suspects(all), named);
-  append(strangers(window, scorer), named);
+  append(strangers(window, scorer, kEver), named);
   if (all) {
-    strangers_.addUnknown(window, named);
+    strangers_.addUnknown(window, kEver, named);
     dropMovers(named);
   }
   return named;

@@ -37,8 +37,8 @@ class WhoSends {
   /// Takes in what messages list besides.
   void addList(const Event& event, Accepted& accepted) { strangers_.addList(event, accepted); }
   /// As Strangers::addUnknown().
-  void addUnknown(const Window& window, std::vector<Suspect>& suspects) const {
-    strangers_.addUnknown(window, suspects);
+  void addUnknown(const Window& window, std::int64_t since, std::vector<Suspect>& suspects) const {
+    strangers_.addUnknown(window, since, suspects);
   }
   /// Takes note of what events do not say, from now on.
   void set(const Senders& senders);
@@ -66,10 +66,13 @@ class WhoSends {
   bool isAbnormal() const { return two_senders_.last(); }
 
   /// Who explains what is unusual: who is there twice, who plays, and one stranger.
-  std::vector<Suspect> causes(const Window& window, const Scorer& scorer) const;
+  /// @param since as Strangers::addUnknown()
+  std::vector<Suspect> causes(const Window& window, const Scorer& scorer,
+                              std::int64_t since) const;
   /// All others, which explain nothing.
-  std::vector<Suspect> strangers(const Window& window, const Scorer& scorer) const {
-    return strangers_.suspects(window, scorer, moved_);
+  std::vector<Suspect> strangers(const Window& window, const Scorer& scorer,
+                                 std::int64_t since) const {
+    return strangers_.suspects(window, scorer, moved_, since);
   }
   std::vector<Suspect> movers() const { return moved_.suspects(true); }
   /// Drops those of movers() from suspects that are so for being unknown.

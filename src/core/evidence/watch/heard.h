@@ -15,6 +15,9 @@
 
 namespace self_awareness::core::evidence {
 
+/// What has one cause shows within so long: what was there longer before is not why [ns].
+constexpr std::int64_t kOneCause = 5 * kRateSpan;
+
 /// What was heard of a recording so far, as all channels need it: who came when last, and
 /// whether the whole robot stood still (docs/method.md, sections 1.4 and 3.7).
 class Heard {

@@ -34,22 +34,32 @@ TEST(AgeLevel, AStampOfTheFutureIsOneUntilAllAreSo) {
 TEST(AgeLevel, WhoIsTooOldSaysNothingOfWhatIsUsualHoweverLongThatLasts) {
   constexpr double kMost = 1;
   AgeLevel level;
-  level.add(0, 0.02, 0, kMost);
+  level.add(0, 0.02, {0, 0.1}, kMost);
   for (int second = 1; second < 600; ++second) {
-    EXPECT_GT(level.add(second * kSecond, 3, 0, kMost), 2.9) << second;
+    EXPECT_GT(level.add(second * kSecond, 3, {0, 0.1}, kMost), 2.9) << second;
   }
-  EXPECT_EQ(level.add(600 * kSecond, 0.02, 0, kMost), 0);
+  EXPECT_EQ(level.add(600 * kSecond, 0.02, {0, 0.1}, kMost), 0);
   for (int second = 601; second < 1200; ++second) {
-    EXPECT_GT(level.add(second * kSecond, -3, 0, kMost), 2.9) << second;
+    EXPECT_GT(level.add(second * kSecond, -3, {0, 0.1}, kMost), 2.9) << second;
+  }
+}
+
+TEST(AgeLevel, WhoComesBackToWhatIsUsualIsSoAfterAWhile) {
+  AgeLevel level;
+  level.add(0, -3, {0, 0.1}, 1);  // one wrong stamp, or a clock that was ahead
+  double older = 0;
+  for (int second = 1; second < 200; ++second) {
+    older = level.add(second * kSecond, 0.02, {0, 0.1}, 1);
+    EXPECT_EQ(older > 1, second < 120) << second;
   }
 }
 
 TEST(AgeLevel, WhoWasLateAndComesBackToWhatIsUsualIsNotAhead) {
   AgeLevel level;
-  level.add(0, -12.5, -15);  // its clock is 15 s ahead, and the message had waited
-  EXPECT_EQ(level.add(kSecond, -15, -15), 0);
-  EXPECT_EQ(level.add(2 * kSecond, -17.8, -15), 0) << "the next class";
-  EXPECT_EQ(level.add(3 * kSecond, -25, -15), 25 - 17.8);
+  level.add(0, -12.5, {-15, -12.5});  // its clock is 15 s ahead, and the message had waited
+  EXPECT_EQ(level.add(kSecond, -15, {-15, -12.5}), 0);
+  EXPECT_EQ(level.add(2 * kSecond, -17.8, {-15, -12.5}), 0) << "the next class";
+  EXPECT_EQ(level.add(3 * kSecond, -25, {-15, -12.5}), 25 - 17.8);
 }
 
 TEST(AttributeCounts, CountsWhatMessagesAre) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -58,7 +59,8 @@ class ExplanationTest : public testing::Test {
     std::vector<Suspect> named =
         Explanation(model_, std::make_shared<Upstream>(model_->components(), graph_))
             .suspects(excessesOf(model_, shares, scorer_), scorer_, events_);
-    Strangers(*model_, nullptr, graph_).addUnknown(window, named);
+    Strangers(*model_, nullptr, graph_)
+        .addUnknown(window, std::numeric_limits<std::int64_t>::min(), named);
     return named;
   }
   static Track overdue(EventId id) { return trackOf(kOverdue, id, id); }
