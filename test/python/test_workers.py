@@ -82,6 +82,15 @@ def test_batches_are_few_and_not_long(tasks: int, processes: int, batches: int) 
     assert InProcess().batches(tasks) == tasks
 
 
+def test_a_process_that_is_killed_again_and_again_is_told() -> None:
+    with pytest.raises(ValueError, match='^0: a process .* was killed'):
+        list(Processes(2).map(die, None, range(4), 'test'))
+
+
+def die(_: None, __: int) -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
 def test_a_process_that_is_killed_is_replaced(tmp_path: Path) -> None:
     results = Processes(2).map(die_once, tmp_path, range(40), 'test')
     assert list(results) == list(range(40))

@@ -10,7 +10,7 @@ import shutil
 import tempfile
 import threading
 import time
-from typing import Any, Callable, Dict, Tuple
+from typing import Any, Callable, Dict, Sequence, Tuple
 
 import genpy.dynamic
 import rosbag
@@ -58,7 +58,7 @@ class Robot:
 
     def __init__(self) -> None:
         self.age = 0.0       # of the transforms [s]
-        self.frames = FRAMES
+        self.frames: Sequence[str] = FRAMES
         self.status = GoalStatus.SUCCEEDED
 
     def message(self, topic: str, stamp: rospy.Time) -> Any:
@@ -168,6 +168,7 @@ class FieldTest(MonitorCase):
             listener.await_settled()
             listener.next_statuses(20)
             self.assertEqual(listener.errors, [], 'an alarm before the fault')
+            self.assertFalse(any(words in each.message for each in listener.alarms))
             began = rospy.get_time()
             fault(sent)
             said = await_condition(words, lambda: next(

@@ -81,7 +81,7 @@ def _run(parser: argparse.ArgumentParser, work: Work, argv: Optional[Sequence[st
         _check_texts(sys.argv[1:] if argv is None else argv)
         code = work(parser.parse_args(argv))
         sys.stdout.flush()
-    except SystemExit as stop:  # of argparse: after --help, or after wrong usage
+    except SystemExit as stop:  # after --help or wrong usage, or of the work, with its code
         return int(stop.code or 0)
     except KeyboardInterrupt:
         return _INTERRUPTED

@@ -28,18 +28,18 @@ _LEAST_MORE_H = 1.0 / 60.0
 
 @dataclass(frozen=True)
 class Plan:
-    """What is to be learned: the file of the model, and what the options of `learn` say.
+    """What is to be learned.
 
     Recordings that are there count among the hours; time in which nobody is heard does not.
     """
 
-    model: str
-    logs: str
-    hours: float
-    start_up: float
-    budget: float
+    model: str  # file to write
+    logs: str  # folder of the event logs
+    hours: float  # of recordings to learn from
+    start_up: float  # left out after each start of the robot [s]
+    budget: float  # false alarms an hour that the limits allow
     encoding: EncodingRules
-    subscribe: str
+    subscribe: str  # used or all, see launch/record.launch
 
 
 class LearningNode:

@@ -10,7 +10,7 @@ import numpy as np
 
 from self_awareness import Roc, RocPoint
 from self_awareness.output_files import replacing
-from self_awareness.reporting.report.timeline import SHOWN, Timeline
+from self_awareness.reporting.report.timeline import SHOWN_LIMITS, Timeline
 from self_awareness.reporting.text import percent
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def _draw_scores(axes: Axes, plot: ScorePlot) -> None:
     shown, limit = plot.timeline, plot.timeline.limit
     times, lowest, highest = shown.edges[:-1], shown.lowest, shown.highest
     if limit is not None and limit < 0:
-        lowest, highest = (np.maximum(each, -SHOWN) for each in (lowest, highest))
+        lowest, highest = (np.maximum(each, -SHOWN_LIMITS) for each in (lowest, highest))
     _shade(axes, shown.settling, 'settling: no alarm yet', color='0.9')
     _shade(axes, [(start, end) for start, end, _ in plot.alarms], 'alarm', color='tab:red',
            alpha=0.22)

@@ -138,7 +138,7 @@ class _How:
     """How batches are counted; at most so many events are kept of each."""
 
     counting: Counting
-    skip_bad: bool
+    skip_bad: bool  # leave out bags that cannot be used, and go on
     most_events: int
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from self_awareness.reporting.report.against import Counts, Evidence, Histogram, seconds
 from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.intervals import ALARM, Interval
-from self_awareness.reporting.report.timeline import SHOWN, Lanes, Timeline
+from self_awareness.reporting.report.timeline import SHOWN_LIMITS, Lanes, Timeline
 from self_awareness.reporting.text import percent
 
 Figure = Dict[str, Any]
@@ -172,8 +172,8 @@ def _score_axis(timeline: Timeline) -> Figure:
     if timeline.limit is None:
         return {'title': {'text': 'score'}, 'zeroline': False}
     if timeline.limit < 0:
-        low = max(-SHOWN, float(np.nanmin(np.append(timeline.lowest, timeline.limit))))
-        ticks = list(range(-int(SHOWN), 0))
+        low = max(-SHOWN_LIMITS, float(np.nanmin(np.append(timeline.lowest, timeline.limit))))
+        ticks = list(range(-int(SHOWN_LIMITS), 0))
         return {'title': {'text': 'of the limit'}, 'zeroline': False,
                 'range': [min(low, -1.5) * 1.05, timeline.limit + 0.1],
                 'tickvals': ticks, 'ticktext': [percent(-each) for each in ticks]}
@@ -210,7 +210,7 @@ def _clipped(timeline: Timeline, scores: np.ndarray) -> List[Optional[float]]:
     if timeline.limit is not None and timeline.limit < 0:
         # The evidence of a topic that comes every few seconds grows to nearly its limit again and
         # again: of normal operation, that drew walls.
-        scores = np.clip(scores, -SHOWN, timeline.limit)
+        scores = np.clip(scores, -SHOWN_LIMITS, timeline.limit)
     return _numbers(scores)
 
 

@@ -21,8 +21,8 @@ MOST_FINE = 1500
 """Windows that are stretches of their own, at most so many."""
 MOST_CELLS = 20_000_000
 """Stretches times components, at most so many: they are kept in memory."""
-SHOWN = 4.0
-"""Scores beyond so many limits are drawn at the edge."""
+SHOWN_LIMITS = 4.0
+"""Scores beyond so many limits are drawn at the edge; those within the limits are not drawn."""
 
 _BEFORE = 5 * SECOND_NS
 _AFTER = 15 * SECOND_NS
