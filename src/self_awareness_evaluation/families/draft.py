@@ -53,12 +53,12 @@ class Draft:
                      frozenset(self.subscriptions), self.far)
 
     def add(self, name: str, topic: str, datatype: str, emission: Emission,
-            other: str = '') -> int:
+            other: str = '', fails: float = 0.0) -> int:
         """Add an output of the component of that name, and return its index; a topic is its own
         if it does not begin with a slash."""
         source = f'{self.namespace}/{name}'
         self.outputs.append(Output(source, topic if topic.startswith('/') else f'{source}/{topic}',
-                                   datatype, emission, other))
+                                   datatype, emission, other, fails))
         return len(self.outputs) - 1
 
     def add_timer(self, name: str, rate_hz: float, topic: str = 'data', activity: str = '') -> int:

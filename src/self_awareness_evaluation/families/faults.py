@@ -15,7 +15,8 @@ AFTER_CRASH = (STALL, LOAD, STOP)
 
 SLOWER = '0.7 of the rate'  # a fault of one component that no gap alone shows
 
-OLD, LOSSES, OTHER, FLOOD = 'old stamps', 'loses 30 %', 'new value', 'flood of log lines'
+OLD, LOSSES, OTHER, FLOOD, FAILS = ('old stamps', 'loses 30 %', 'new value', 'flood of log lines',
+                                    'fails more often')
 """The kinds of faults of one component that what it says shows."""
 
 STARVED, SILENT = 'starved CPU', 'everything silent'  # the kinds of faults of the whole robot
@@ -33,8 +34,8 @@ class Fault:
     # out some answers. LATE: its answers to others come 60 ms later. MISSES: it answers nothing
     # for a second, now and then. What answers to it suffers as it would. OLD: its stamps are 3 s
     # older. LOSSES: 30 % of its messages never arrive. OTHER: its outputs say their other value.
-    # FLOOD: it logs 100 warnings a second. STARVED: all messages wait, longer and longer within 20
-    # s. SILENT: nobody sends. Empty: nothing is wrong.
+    # FLOOD: it logs 100 warnings a second. FAILS: four in five of its goals fail. STARVED: all
+    # messages wait, longer and longer within 20 s. SILENT: nobody sends. Empty: nothing is wrong.
     kind: str
     source: str  # the component; empty: the robot
     onset_s: float  # from the beginning of the recording [s]

@@ -19,6 +19,7 @@ _TRANSFORMS = 'tf2_msgs/TFMessage'
 _DIAGNOSTICS = 'diagnostic_msgs/DiagnosticArray'
 _TEMPERATURE = 'sensor_msgs/Temperature'
 _RESULT = 'move_base_msgs/MoveBaseActionResult[status.status='
+_FAILS = 1.0 / 12.0  # of the goals, in normal operation
 _HOLE_S = 6.0
 _HEAD_OR_TAIL_S = (6.0, 20.0)
 _CLOCKS_PPM = 50.0
@@ -250,6 +251,9 @@ def _everyday(draft: Draft) -> None:
         draft.add_timer(name, 10.0, 'command')
         for lines in ('rosgraph_msgs/Log[level=2]', WARNING):
             draft.add(name, LOG, lines, Sporadic(rng.uniform(3.0, 20.0)))
+    draft.add_timer('gripper', 5.0, 'status')
+    draft.add('gripper', 'result', f'{_RESULT}3]', Sporadic(rng.uniform(1.0, 5.0)), f'{_RESULT}4]',
+              fails=_FAILS)
 
 
 def _add_list(draft: Draft, name: str, topic: str, field: str, usual: str, other: str) -> None:

@@ -7,8 +7,8 @@ from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
 import numpy as np
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
-from self_awareness_evaluation.families.faults import (AFTER_CRASH, CRASH, FLOOD, HALF_RATE, LATE,
-                                                       LOAD, LONGEST_START_S, LOSSES, MISSES,
+from self_awareness_evaluation.families.faults import (AFTER_CRASH, CRASH, FAILS, FLOOD, HALF_RATE,
+                                                       LATE, LOAD, LONGEST_START_S, LOSSES, MISSES,
                                                        NOTHING, OLD, OTHER, RESTART, SILENT,
                                                        SLOWER, STALL, STARVED, STOP, Fault)
 from self_awareness_evaluation.families.kinds import FAMILIES
@@ -30,7 +30,8 @@ TITLES: Dict[str, str] = {
     STALL: 'a stall follows a crash', LOAD: 'load follows a crash',
     STOP: 'others stop after a crash', SLOWER: '0.7 of the rate', OLD: 'stamps are 3 s older',
     LOSSES: '30 % of the messages lost', OTHER: 'no transform, failed goals, an error (WARN)',
-    FLOOD: 'log lines without end', NEVER: 'no latched message (WARN)'}
+    FLOOD: 'log lines without end', NEVER: 'no latched message (WARN)',
+    FAILS: 'four in five goals fail, not one in twelve'}
 """What tables call the kinds of faults."""
 
 KINDS = tuple(TITLES)  # as they are told apart in the results
@@ -126,8 +127,9 @@ class Records:
                STARVED: [''], SILENT: [''], SELDOM: robot.seldom, RESTART: regular,
                SLOWER: regular, OLD: robot.numbered[::_ONE_IN],
                LOSSES: robot.numbered[1::_ONE_IN],
-               OTHER: robot.sending(lambda output: bool(output.other)),
+               OTHER: robot.sending(lambda output: bool(output.other) and not output.fails),
                FLOOD: robot.sending(lambda output: output.datatype == WARNING),
+               FAILS: robot.sending(lambda output: output.fails > 0),
                NEVER: robot.latching,
                **{kind: regular[first::len(AFTER_CRASH)]
                   for first, kind in enumerate(AFTER_CRASH)}}
@@ -177,7 +179,7 @@ class Records:
             return _PAUSES * float(np.max(np.diff(stamps), initial=0)) / SECOND_NS
         if kind == RESTART:
             return RESTARTS_IN_S + AFTER_RESTART_S
-        if kind in (LOSSES, NEVER):
+        if kind in (LOSSES, NEVER, FAILS):
             return 2.0 * AFTER_ONSET_S
         return after_death_s if kind == DEATH else AFTER_ONSET_S
 

@@ -12,8 +12,8 @@ from self_awareness_evaluation.families import messages
 from self_awareness_evaluation.families.conditions import Activity, Conditions, in_order
 from self_awareness_evaluation.families.emissions import (Emission, Feedback, Once,
                                                           Sporadic, stalled)
-from self_awareness_evaluation.families.faults import (AFTER_CRASH, CRASH, FLOOD, HALF_RATE, LATE,
-                                                       LOAD, LONGEST_START_S, LOSSES, MISSES,
+from self_awareness_evaluation.families.faults import (AFTER_CRASH, CRASH, FAILS, FLOOD, HALF_RATE,
+                                                       LATE, LOAD, LONGEST_START_S, LOSSES, MISSES,
                                                        NOTHING, OLD, OTHER, RESTART, SILENT,
                                                        SLOWER, STARVED, Fault)
 from self_awareness_evaluation.families.scene import LASTS_S, Scene
@@ -29,6 +29,8 @@ LOG, WARNING = '/rosout', 'rosgraph_msgs/Log[level=4]'
 _OLD_S = 3.0  # of stamps
 _LOST = 0.3
 _FLOOD_HZ = 100.0
+
+_FAILS = 0.8  # of the goals, with FAILS
 
 _MISSED_S = 1.0  # what asks in this time is not answered
 _BETWEEN_MISSES_S = 5.0  # mean time until it happens again
@@ -50,6 +52,7 @@ class Output:
     datatype: str  # of the messages
     emission: Emission  # when it sends; answers are to outputs before it
     other: str = ''  # datatype with another value, that it has with OTHER; empty: it has none
+    fails: float = 0.0  # share of the messages that have it anyhow; with FAILS, 0.8
 
 
 @dataclass(frozen=True)
@@ -155,6 +158,7 @@ class Robot:
         Raises:
             ValueError: the recording is beyond LONGEST_START_S, or nothing happens in it.
         """
+        assert fault.source in {'', *self.sources}, fault
         if not 0.0 <= begin_s < begin_s + seconds <= LONGEST_START_S:
             raise ValueError(f'a recording from {begin_s} s on, {seconds} s long: not in a start '
                              f'of {LONGEST_START_S:g} s')
@@ -245,6 +249,10 @@ class Robot:
             inside = (times >= scene.recorded_from) & (times < scene.end)
             times, attributes = times[inside], attributes[inside]
             says = scene.has(OTHER, output.source, times)
+            if output.fails:
+                draws = scene.of_recording(f'fails {index}').random(len(times))
+                says = draws < np.where(scene.has(FAILS, output.source, times), _FAILS,
+                                        output.fails)
             if output.other and says.any():
                 outputs.append(replace(output, datatype=output.other))
                 others.append((times[says], attributes[says]))

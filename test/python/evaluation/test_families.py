@@ -9,10 +9,10 @@ import pytest
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.conditions import Conditions
 from self_awareness_evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
-from self_awareness_evaluation.families.faults import (CRASH, FLOOD, HALF_RATE, LATE, LOAD, LOSSES,
-                                                       MISSES, NOTHING, OLD, OTHER, RESTART,
-                                                       SILENT, SLOWER, STALL, STARVED, STOP,
-                                                       Fault)
+from self_awareness_evaluation.families.faults import (CRASH, FAILS, FLOOD, HALF_RATE, LATE, LOAD,
+                                                       LOSSES, MISSES, NOTHING, OLD, OTHER,
+                                                       RESTART, SILENT, SLOWER, STALL, STARVED,
+                                                       STOP, Fault)
 from self_awareness_evaluation.families.kinds import DEFAULT, FAMILIES
 from self_awareness_evaluation.families.protocol import (DEATH, NEVER, RESTARTS_IN_S, SELDOM,
                                                          Records)
@@ -283,6 +283,21 @@ def test_another_value_comes_in_place_of_the_usual_one(source: str, usual: str,
                                    fault.recording.stamps >= fault.onset))
     assert len(before) == len(after) == 1 and before != after
     assert usual in before.pop() and other in after.pop()
+
+
+def test_four_goals_in_five_fail_where_one_in_twelve_did() -> None:
+    fault = everyday(FAILS)
+    assert fault.source == '/gripper'
+    goals = [index for index, kind in enumerate(fault.recording.event_types)
+             if kind.source == fault.source and '[' in kind.type]
+    assert len(goals) == 2
+    failed, = (index for index in goals
+               if fault.recording.event_types[index].type.endswith('=4]'))
+    of_goals = np.isin(fault.recording.ids, goals)
+    before = of_goals & (fault.recording.stamps < fault.onset)
+    after = of_goals & (fault.recording.stamps >= fault.onset)
+    assert np.mean(fault.recording.ids[before] == failed) < 0.2
+    assert np.mean(fault.recording.ids[after] == failed) == pytest.approx(0.8, abs=0.15)
 
 
 def test_who_floods_the_log_writes_a_hundred_warnings_a_second() -> None:
