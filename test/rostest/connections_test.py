@@ -9,12 +9,8 @@ from std_msgs.msg import String
 
 from live_system import (MonitorListener, again_if_disturbed, await_condition, operation,
                          talker, write_bag)
-from monitor_case import MonitorCase, Talker
-from self_awareness import Tuning
+from monitor_case import MonitorCase, Talker, learned
 from self_awareness.msg import SelfAwareness, Suspect
-from self_awareness.parts import BagPart
-from self_awareness.training import many_bags
-from self_awareness.workers import InProcess
 
 NODE = '/connections'
 NODES = (('/camera', '/image', 0.1), (NODE, '/people', 0.05))
@@ -32,17 +28,14 @@ class ConnectionsTest(MonitorCase):
 
     def trained(self) -> str:
         """A model that learned from two starts, in which this node subscribed to /image."""
-        tuning = Tuning()
-        tuning.set('start_time', START_TIME_S)
-        parts = [BagPart(write_bag(self.path('{}.bag'.format(seed)), (
+        bags = [write_bag(self.path('{}.bag'.format(seed)), (
             (stamp + HOUR_S * seed, source, topic)
-            for stamp, source, topic in operation(NODES, 120, seed)))) for seed in (1, 2)]
-        trained = many_bags.train(parts, many_bags.Counting(tuning=tuning))
-        for _ in parts:
-            trained.model.add_subscriptions({(NODE, '/image')})
-        self.assertEqual(trained.model.subscriptions, {(NODE, '/image')})
-        many_bags.preliminary_limits(trained, InProcess())
-        trained.model.save(self.path('model'))
+            for stamp, source, topic in operation(NODES, 120, seed))) for seed in (1, 2)]
+        model = learned(bags, START_TIME_S)
+        for _ in bags:
+            model.add_subscriptions({(NODE, '/image')})
+        self.assertEqual(model.subscriptions, {(NODE, '/image')})
+        model.save(self.path('model'))
         return self.path('model')
 
     @again_if_disturbed

@@ -10,7 +10,7 @@ import shutil
 import tempfile
 import threading
 import time
-from typing import Any, Callable, Dict, Sequence, Tuple
+from typing import Any, Dict, Sequence, Tuple
 
 import genpy.dynamic
 import rosbag
@@ -22,12 +22,8 @@ from nav_msgs.msg import OccupancyGrid, Odometry
 from rosgraph_msgs.msg import Log
 
 from live_system import START_S, MonitorListener, again_if_disturbed, await_condition
-from monitor_case import MonitorCase
-from self_awareness import Tuning
+from monitor_case import MonitorCase, learned
 from self_awareness.msg import SelfAwareness
-from self_awareness.parts import BagPart
-from self_awareness.training import many_bags
-from self_awareness.workers import InProcess
 
 NODE = '/field_robot'
 FRAMES = ('base', 'camera', 'laser')
@@ -151,26 +147,22 @@ class FieldTest(MonitorCase):
     def setUpClass(cls) -> None:
         folder = tempfile.mkdtemp()
         cls.addClassCleanup(shutil.rmtree, folder)
-        tuning = Tuning()
-        tuning.set('start_time', START_TIME_S)
-        parts = [BagPart(Robot().write(os.path.join(folder, '{}.bag'.format(seed)), seed))
-                 for seed in range(STARTS)]
-        trained = many_bags.train(parts, many_bags.Counting(tuning=tuning))
-        many_bags.preliminary_limits(trained, InProcess())
         cls.trained = os.path.join(folder, 'model')
-        trained.model.save(cls.trained)
+        learned([Robot().write(os.path.join(folder, '{}.bag'.format(seed)), seed)
+                 for seed in range(STARTS)], START_TIME_S).save(cls.trained)
 
-    def find(self, fault: Callable[[LiveRobot], None], kind: str, level: int, words: str,
-             seconds: float, **robot: bool) -> None:
-        """The node is named for this kind of fault, with these words, soon after it began."""
-        with LiveRobot(**robot) as sent, MonitorListener() as listener, \
+    def find(self, kind: str, level: int, words: str, seconds: float, latched: bool = True,
+             **fault: Any) -> None:
+        """The node is named with these words soon after what a fault says of it is so."""
+        with LiveRobot(latched) as sent, MonitorListener() as listener, \
                 self.monitor(self.trained, detector='evidence', unknown='warn', subscribe='all'):
             listener.await_settled()
             listener.next_statuses(20)
             self.assertEqual(listener.errors, [], 'an alarm before the fault')
             self.assertFalse(any(words in each.message for each in listener.alarms))
             began = rospy.get_time()
-            fault(sent)
+            for name, value in fault.items():
+                setattr(sent, name, value)
             said = await_condition(words, lambda: next(
                 (each for each in listener.alarms
                  if (each.kind, each.level) == (kind, level) and words in each.message), None),
@@ -180,38 +172,30 @@ class FieldTest(MonitorCase):
 
     @again_if_disturbed
     def test_old_stamps_of_transforms(self) -> None:
-        def fault(robot: LiveRobot) -> None:
-            robot.age = 5.0
-        self.find(fault, SelfAwareness.STALE, SelfAwareness.ERROR, '/tf', 3)
+        self.find(SelfAwareness.STALE, SelfAwareness.ERROR, '/tf', 3, age=5.0)
 
     @again_if_disturbed
     def test_a_transform_that_is_missing(self) -> None:
-        def fault(robot: LiveRobot) -> None:
-            robot.frames = FRAMES[:2]
-        self.find(fault, SelfAwareness.STRANGER, SelfAwareness.WARN, 'without laser', 5)
+        self.find(SelfAwareness.STRANGER, SelfAwareness.WARN, 'without laser', 5,
+                  frames=FRAMES[:2])
 
     @again_if_disturbed
     def test_what_was_latched_in_each_start_and_is_not_there(self) -> None:
-        self.find(lambda _: None, SelfAwareness.NEVER_CAME, SelfAwareness.WARN, '/map',
-                  3 * START_TIME_S, latched=False)
+        self.find(SelfAwareness.NEVER_CAME, SelfAwareness.WARN, '/map', 3 * START_TIME_S,
+                  latched=False)
 
     @again_if_disturbed
     def test_a_flood_of_log_lines(self) -> None:
-        def fault(robot: LiveRobot) -> None:
-            robot.log_period = 0.01
-        self.find(fault, SelfAwareness.FAST, SelfAwareness.ERROR, '/rosout', 8)
+        self.find(SelfAwareness.FAST, SelfAwareness.ERROR, '/rosout', 8, log_period=0.01)
 
     @again_if_disturbed
     def test_goals_that_never_failed_before(self) -> None:
-        def fault(robot: LiveRobot) -> None:
-            robot.status = GoalStatus.ABORTED
-        self.find(fault, SelfAwareness.STRANGER, SelfAwareness.WARN, 'status.status=4', 5)
+        self.find(SelfAwareness.STRANGER, SelfAwareness.WARN, 'status.status=4', 5,
+                  status=GoalStatus.ABORTED)
 
     @again_if_disturbed
     def test_messages_that_are_lost(self) -> None:
-        def fault(robot: LiveRobot) -> None:
-            robot.lost = 0.3
-        self.find(fault, SelfAwareness.LOSSY, SelfAwareness.ERROR, 'messages', 8)
+        self.find(SelfAwareness.LOSSY, SelfAwareness.ERROR, 'messages', 8, lost=0.3)
 
 
 if __name__ == '__main__':

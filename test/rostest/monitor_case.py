@@ -15,7 +15,11 @@ from std_srvs.srv import Trigger, TriggerResponse
 
 import self_awareness
 from live_system import Process, operation, ours, run_program, talker, write_bag
+from self_awareness import TrainedModel
+from self_awareness.parts import BagPart
 from self_awareness.srv import Accept, AcceptResponse
+from self_awareness.training import many_bags
+from self_awareness.workers import InProcess
 
 
 class Talker:
@@ -84,6 +88,15 @@ def forget_parameters() -> None:
     """Takes the monitor's parameters from the master: the next one must not find them."""
     if rospy.has_param('/self_awareness'):
         rospy.delete_param('/self_awareness')
+
+
+def learned(bags: Sequence[str], start_time: float) -> TrainedModel:
+    """A model with limits, of recordings of starts that take so long [s]."""
+    tuning = self_awareness.Tuning()
+    tuning.set('start_time', start_time)
+    trained = many_bags.train([BagPart(bag) for bag in bags], many_bags.Counting(tuning=tuning))
+    many_bags.preliminary_limits(trained, InProcess())
+    return trained.model
 
 
 class FolderCase(unittest.TestCase):

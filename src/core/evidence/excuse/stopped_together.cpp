@@ -45,8 +45,7 @@ StoppedTogether::Found StoppedTogether::excuse(
                    [](const Excess& excess) { return excess.share > 1; })) {
     return found;
   }
-  const Window window{limitsOfSilence(limits), scorer.heard(), excesses,
-                      missedBy(scorer.heard(), excesses)};
+  Window window{limitsOfSilence(limits), scorer.heard(), excesses, {}};
   found.silent = everything(window, strangers);
   if (found.silent) {
     for (Excess& excess : excesses) {
@@ -61,6 +60,7 @@ StoppedTogether::Found StoppedTogether::excuse(
   if (upstream_->empty()) {
     return found;
   }
+  window.missed = missedBy(window.heard, excesses);
   const Ids silent = this->silent(window, may_be_silent);
   std::set<EventId> stopped = this->stopped(silent, window);
   Ids ids(stopped.begin(), stopped.end());

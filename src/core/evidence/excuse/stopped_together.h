@@ -68,7 +68,7 @@ class StoppedTogether {
     std::vector<double> limits;  // of silence, by id; NaN: it is not judged
     const Heard& heard;
     std::vector<Excess>& excesses;
-    std::vector<std::int64_t> missed;  // missedBy(), by id
+    std::vector<std::int64_t> missed;  // missedBy(), by id; empty without a graph
   };
 
   std::vector<double> limitsOfSilence(const Limits& limits) const;
