@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -13,10 +14,9 @@
 
 #include "core/evidence/channel/scorer.h"
 #include "core/evidence/excuse/accepted.h"
-#include "core/evidence/excuse/busy_machine.h"
+#include "core/evidence/excuse/excuses.h"
 #include "core/evidence/excuse/settling.h"
-#include "core/evidence/excuse/slower_clock.h"
-#include "core/evidence/excuse/stopped_together.h"
+#include "core/evidence/explain/causes.h"
 #include "core/evidence/explain/excess.h"
 #include "core/evidence/explain/explanation.h"
 #include "core/evidence/presence/never_heard.h"
@@ -37,6 +37,17 @@ double largestOf(const std::vector<double>& shares) {
   // By vectors of the processor: every window needs it.
   const auto size = static_cast<Eigen::Index>(shares.size());
   return Eigen::Map<const Eigen::ArrayXd>(shares.data(), size).maxCoeff();
+}
+
+/// The limits of silence, by event type; NaN: it is not judged.
+std::vector<double> ofSilence(const Model& model, const Limits& limits) {
+  std::vector<double> of_silence(model.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t track = 0; track < limits.tracks.size(); ++track) {
+    if (model.finding(track) == Finding::kSilent) {
+      of_silence[model.tracks()[track].to] = limits.tracks[track];
+    }
+  }
+  return of_silence;
 }
 
 class Judge : public core::Judge {
@@ -74,7 +85,7 @@ class Judge : public core::Judge {
   void accept(const Acceptances& accepted) override {
     accepted_.accept(accepted);
     unsubscribed_.accept(accepted);
-    stopped_together_.accept(accepted);
+    excuses_.accept(accepted);
   }
   bool isAccepted(EventId id, Kind kind) const override { return accepted_.isExcused(id, kind); }
   void setMissing(const std::set<SourceGraph::Subscription>& missing) override {
@@ -88,15 +99,16 @@ class Judge : public core::Judge {
 
  private:
   /// Finds the shares of a window by the evidence, without what is not judged now.
-  void weigh(const Window& window, std::vector<double>& evidence);
+  void weigh(std::vector<double>& evidence);
   /// Finds what is unusual, and excuses what is no fault of the component. Takes back the shares
   /// of what is normal, and tells what is left of them, but for a mode that training never saw.
   void excuse(const Window& window, std::int64_t end, Judgement& judgement);
   /// Takes back the shares of what has an excuse.
-  void takeBack(Excuse excuse);
+  void takeBack(Excused reason);
   /// Excuses who does not come, or is unusual, because of who sends.
   void excuseBySenders(const Window& window);
   /// The channels that speak against somebody, as Judgement::evidence.
+  /// @param judgement with what excuses say
   std::string evidenceOf(const Judgement& judgement) const;
   /// Whether anything is unusual that is not accepted.
   bool isUnusual() const;
@@ -104,6 +116,16 @@ class Judge : public core::Judge {
   bool isCertain() const;
   /// Who of the suspects waits for the first one, if that is silent; empty: nobody.
   std::string waitingIn(const std::vector<Suspect>& suspects) const;
+  /// What is unusual in the last window.
+  Unusual unusual() const {
+    return {*unusual_,
+            scorer_,
+            events_,
+            causes_,
+            limits_of_silence_,
+            strangers_,
+            accepted_.mayBeSilent()};
+  }
   /// The suspects of a window with evidence of known event types.
   /// @param silent_first whether those come before what was never heard that tracks speak against,
   /// and that does not wait for its messages
@@ -111,26 +133,28 @@ class Judge : public core::Judge {
 
   std::shared_ptr<const Model> model_;
   std::optional<Limits> limits_;
+  std::vector<double> limits_of_silence_;    // by id; none: as long as there are no limits
   std::int64_t window_;                      // length of a whole one [ns]
   std::shared_ptr<const Vocabulary> heard_;  // event types by id; null: those of the model
   std::shared_ptr<const SourceGraph> graph_;
   Scorer scorer_;
   RecentEvents events_;
   std::shared_ptr<const Upstream> upstream_;
+  Causes causes_;
   Explanation explanation_;
   NeverHeard never_heard_;
   WhoSends who_sends_;
   Unsubscribed unsubscribed_;
   Accepted accepted_;
   Settling settling_;
-  StoppedTogether stopped_together_;
-  SlowerClock slower_clock_;
-  BusyMachine busy_machine_;
+  Excuses excuses_;
   std::int64_t settle_time_ = 0;  // [ns]
   std::vector<double> shares_;    // of its limit that each track has reached
   SharesHandler tell_shares_;
   Excesses excesses_;
-  std::vector<Excess>* unusual_ = nullptr;  // in the last window
+  // Of the last window:
+  std::vector<Excess>* unusual_ = nullptr;
+  std::map<std::string, std::int64_t> strangers_;  // as Unusual has them
 };
 
 Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
@@ -144,15 +168,14 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       scorer_(model_, window),
       events_(model_->size()),
       upstream_(std::make_shared<Upstream>(model_->components(), graph)),
-      explanation_(model_, upstream_),
+      causes_(model_, upstream_),
+      explanation_(model_),
       never_heard_(*model_, limits_.value_or(Limits{}), upstream_),
       who_sends_(model_, heard, graph, never_heard_.expected()),
       unsubscribed_(*model_),
       accepted_(model_, std::move(heard)),
       settling_(model_),
-      stopped_together_(model_, upstream_, std::move(graph)),
-      slower_clock_(model_, explanation_),
-      busy_machine_(model_, explanation_),
+      excuses_(model_, allExcuses(model_, std::move(graph))),
       shares_(model_->tracks().size(), 0),
       tell_shares_(std::move(shares)),
       excesses_(model_) {
@@ -161,6 +184,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
   }
   if (limits_) {
     scorer_.capAt(*limits_);
+    limits_of_silence_ = ofSilence(*model_, *limits_);
   }
 }
 
@@ -191,9 +215,7 @@ void Judge::restart() {
   who_sends_.restart();
   unsubscribed_.restart();
   settling_.restart();
-  stopped_together_.restart();
-  slower_clock_.restart();
-  busy_machine_.restart();
+  excuses_.restart();
   excesses_.restart();
 }
 
@@ -205,7 +227,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     return judgement;
   }
   excuseBySenders(window);
-  weigh(window, evidence);
+  weigh(evidence);
   never_heard_.closeWindow(end, settle_time_);
   unsubscribed_.closeWindow(end);
   excuse(window, end, judgement);
@@ -221,8 +243,9 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   judgement.abnormal = *judgement.score < kThreshold;
   judgement.certain = never_heard_.share() > 1 || (largest > 1 && isCertain());
   judgement.suspicious = never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy ||
-                         !who_sends_.evidence().empty() || !slower_clock_.suspects().empty();
+                         !who_sends_.evidence().empty() || !judgement.suspects.empty();
   judgement.evidence = evidenceOf(judgement);
+  const std::vector<Suspect> excused = std::exchange(judgement.suspects, {});
   const bool somebody = largest > 1 || never_heard_.share() > 0 || unsubscribed_.any() ||
                         (judgement.busy && judgement.busy->late > 0);
   if (suspects != NameSuspects::kNever && somebody) {
@@ -232,12 +255,12 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     // Who is within his own range is no suspect because somebody else is unknown.
     judgement.suspects = who_sends_.alone(window, scorer_, suspects == NameSuspects::kAlways);
   }
-  for (const Suspect& faster : slower_clock_.suspects()) {
+  for (const Suspect& each : excused) {
     const bool is_named =
         std::any_of(judgement.suspects.begin(), judgement.suspects.end(),
-                    [&](const Suspect& named) { return named.component == faster.component; });
+                    [&](const Suspect& named) { return named.component == each.component; });
     if (suspects != NameSuspects::kNever && !is_named) {
-      judgement.suspects.push_back(faster);
+      judgement.suspects.push_back(each);
     }
   }
   accepted_.leaveOut(judgement.suspects);
@@ -266,8 +289,8 @@ void Judge::excuseBySenders(const Window& window) {
   }
 }
 
-void Judge::weigh(const Window& window, std::vector<double>& evidence) {
-  settling_.leaveOut(window.start, evidence);
+void Judge::weigh(std::vector<double>& evidence) {
+  settling_.leaveOut(evidence);
   accepted_.leaveOut(scorer_.heard(), evidence);
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     // Most tracks say nothing most of the time, and a division takes its time.
@@ -280,26 +303,20 @@ void Judge::weigh(const Window& window, std::vector<double>& evidence) {
 
 void Judge::excuse(const Window& window, std::int64_t end, Judgement& judgement) {
   unusual_ = &excesses_.closeWindow(shares_, scorer_);
-  StoppedTogether::Found together = stopped_together_.excuse(
-      *unusual_, *limits_, scorer_, who_sends_.silences(end), accepted_.mayBeSilent());
-  judgement.silent = std::move(together.silent);
-  judgement.mode = std::move(together.mode);
-  slower_clock_.excuse(*unusual_, scorer_, events_);
-  judgement.busy = busy_machine_.excuse(*unusual_, scorer_, events_);
-  if (judgement.busy && judgement.silent && judgement.silent->others_go_on) {
-    judgement.silent.reset();  // whom a busy machine holds up
-  }
-  takeBack(Excuse::kAccepted);
+  causes_.closeWindow(*unusual_);
+  strangers_ = who_sends_.silences(end);
+  excuses_.closeWindow(*unusual_, unusual(), judgement);
+  takeBack(Excused::kAccepted);
   if (tell_shares_) {
     tell_shares_(window, {shares_, never_heard_.shares()});
   }
-  takeBack(Excuse::kNewMode);
-  takeBack(Excuse::kSlowerClock);
+  takeBack(Excused::kNewMode);
+  takeBack(Excused::kSlowerClock);
 }
 
-void Judge::takeBack(Excuse excuse) {
+void Judge::takeBack(Excused reason) {
   for (const Excess& excess : *unusual_) {
-    if (excess.excuse == excuse) {
+    if (excess.excused == reason) {
       shares_[excess.track] = 0;
     }
   }
@@ -325,7 +342,7 @@ std::string Judge::evidenceOf(const Judgement& judgement) const {
   if (judgement.busy) {
     channels.insert("busy");
   }
-  if (!slower_clock_.suspects().empty()) {
+  if (!judgement.suspects.empty()) {
     channels.insert("clock");
   }
   if (never_heard_.share() > 0) {
@@ -342,7 +359,7 @@ std::string Judge::evidenceOf(const Judgement& judgement) const {
 }
 
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
-  std::vector<Suspect> first = explanation_.suspects(*unusual_, scorer_, events_);
+  std::vector<Suspect> first = explanation_.suspects(unusual());
   // Who was there long before is not why something is unusual now.
   const std::int64_t since =
       first.empty() ? std::numeric_limits<std::int64_t>::min() : first.front().onset - kOneCause;
@@ -383,7 +400,7 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
 
 bool Judge::isUnusual() const {
   return std::any_of(unusual_->begin(), unusual_->end(),
-                     [](const Excess& excess) { return excess.excuse != Excuse::kAccepted; });
+                     [](const Excess& excess) { return excess.excused != Excused::kAccepted; });
 }
 
 bool Judge::isCertain() const {

@@ -53,7 +53,8 @@ bool beganEarlier(const Suspect& first, const Suspect& culprit, bool is_named) {
     return first.missed > 0 && first.missed < culprit.onset;
   }
   return is_named && isAbsence(culprit.reason.kind) && first.reason.kind != Kind::kStranger &&
-         first.component != culprit.component && first.onset > 0 && first.onset < culprit.onset;
+         !isShared(first.reason.kind) && first.component != culprit.component && first.onset > 0 &&
+         first.onset < culprit.onset;
 }
 
 /// Takes in that a culprit has an excuse, that who is dead has none any more, or that who is named

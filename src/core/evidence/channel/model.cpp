@@ -88,6 +88,10 @@ double Model::logSurvival(EventId id, std::int64_t age) const {
              : gaps_[id].logSurvival(age);
 }
 
+bool Model::isRare(EventId id, std::int64_t silence) const {
+  return logSurvival(id, silence) < std::log(tuning().rare_silence);
+}
+
 std::int64_t Model::longestSilence() const {
   std::int64_t longest = 0;
   for (const Statistics::Recording& recording : statistics_.recordings()) {

@@ -4,8 +4,6 @@
 #include <set>
 #include <utility>
 
-#include "core/evidence/channel/channel.h"
-
 namespace self_awareness::core::evidence {
 namespace {
 
@@ -13,25 +11,22 @@ namespace {
 // comes and goes wherever more is begun at once than there are processors.
 constexpr double kNearlyAll = 0.9;
 
-/// Whether what a track says is that its type came late, or too seldom: who has no time does not
+/// Whether what is unusual is that something came late, or too seldom: who has no time does not
 /// send too often.
-bool isOfLate(std::size_t track, const Scorer& scorer, const RecentEvents& events) {
-  const Track& watched = scorer.model().tracks()[track];
-  if (watched.channel->hasShareOfItsOwn()) {
+bool isOfLate(const Excess& excess, const Unusual& window) {
+  if (excess.isAbsence() || excess.channel->hasShareOfItsOwn()) {
     return false;
   }
   Suspect suspect;
-  suspect.id = watched.to;
-  scorer.explain(track, events, suspect);
+  suspect.id = excess.id;
+  window.scorer.explain(excess.track, window.events, suspect);
   return suspect.reason.kind != Kind::kFast && suspect.reason.kind != Kind::kEarly;
 }
 
 }  // namespace
 
-BusyMachine::BusyMachine(std::shared_ptr<const Model> model, const Explanation& explanation)
-    : model_(std::move(model)),
-      explanation_(explanation),
-      lateness_(model_->components().size()) {}
+BusyMachine::BusyMachine(std::shared_ptr<const Model> model)
+    : model_(std::move(model)), lateness_(model_->components().size()) {}
 
 void BusyMachine::restart() {
   busy_since_.reset();
@@ -39,33 +34,25 @@ void BusyMachine::restart() {
   starved_since_.reset();
 }
 
-std::optional<Busy> BusyMachine::excuse(std::vector<Excess>& excesses, const Scorer& scorer,
-                                        const RecentEvents& events) {
-  std::optional<Busy> busy = late(excesses, scorer, events);
-  const Heard& heard = scorer.heard();
-  if (const auto since = starvedSince(heard)) {
+std::optional<std::int64_t> BusyMachine::closeWindow(const Unusual& window, Judgement& judgement) {
+  std::optional<Busy> busy = late(window);
+  if (const auto since = starvedSince(window.heard())) {
     busy = busy.value_or(Busy{0, 0, 0, *since});
     busy->since = std::min(busy->since, *since);
-    busy->starved = toSeconds(heard.windowEnd() - *since);
+    busy->starved = toSeconds(window.heard().windowEnd() - *since);
   }
-  for (Excess& excess : excesses) {
-    if (busy && excess.excuse == Excuse::kNone && covers(excess, *busy, heard)) {
-      excess.excuse = Excuse::kBusy;
-    }
+  if (!busy) {
+    return std::nullopt;
   }
-  return busy;
+  judgement.busy = busy;
+  since_ = busy->since;
+  return since_;
 }
 
-bool BusyMachine::covers(const Excess& excess, const Busy& busy, const Heard& heard) const {
-  const Track& watched = model_->tracks()[excess.track];
-  if (excess.onset < busy.since || watched.channel->hasShareOfItsOwn()) {
-    return false;
-  }
-  return !isAbsence(model_->finding(excess.track)) || mayHold(watched.to, heard);
-}
-
-bool BusyMachine::mayHold(EventId id, const Heard& heard) const {
-  return heard.silence(id) <= model_->longestGap(id) + kRateSpan;
+bool BusyMachine::explains(const Excess& excess, const Unusual& window) const {
+  // Who fell silent shortly before died, though it could have waited.
+  return excess.onset >= since_ && !excess.channel->hasShareOfItsOwn() &&
+         (!excess.isAbsence() || mayHold(excess.id, window.heard()));
 }
 
 std::optional<std::int64_t> BusyMachine::starvedSince(const Heard& heard) {
@@ -78,19 +65,19 @@ std::optional<std::int64_t> BusyMachine::starvedSince(const Heard& heard) {
   return starved_since_;
 }
 
-std::optional<Busy> BusyMachine::late(const std::vector<Excess>& excesses, const Scorer& scorer,
-                                      const RecentEvents& events) {
-  const std::int64_t now = scorer.heard().windowEnd();
+std::optional<Busy> BusyMachine::late(const Unusual& window) {
+  const Heard& heard = window.heard();
+  const std::int64_t now = heard.windowEnd();
   std::vector<bool> silent(lateness_.size(), false);
-  for (const Excess& excess : excesses) {
-    if (model_->finding(excess.track) == Finding::kSilent && excess.share > 1 &&
-        excess.excuse != Excuse::kAccepted) {
+  for (const Excess& excess : window.excesses) {
+    if (excess.finding() == Finding::kSilent && excess.share > 1 &&
+        excess.excused != Excused::kAccepted) {
       // Silences of a busy machine end soon.
-      silent[excess.component] = silent[excess.component] || !busy_since_ ||
-                                 !mayHold(model_->tracks()[excess.track].to, scorer.heard());
+      silent[excess.component] =
+          silent[excess.component] || !busy_since_ || !mayHold(excess.id, heard);
     }
   }
-  noteLate(excesses, scorer, events);
+  noteLate(window);
   Busy busy;
   std::vector<std::size_t> late;
   std::vector<std::int64_t> since;
@@ -100,14 +87,14 @@ std::optional<Busy> BusyMachine::late(const std::vector<Excess>& excesses, const
       since.push_back(lateness_[component].since);
     }
   }
-  std::set<std::size_t> heard;
+  std::set<std::size_t> seen;
   for (EventId id = 0; id < model_->size() && !late.empty(); ++id) {
-    if (scorer.heard().hasSeen(id)) {
-      heard.insert(model_->componentIndex(id));
+    if (heard.hasSeen(id)) {
+      seen.insert(model_->componentIndex(id));
     }
   }
   busy.late = late.size();
-  busy.components = heard.size();
+  busy.components = seen.size();
   const Tuning& tuning = model_->tuning();
   // Where more are silent, something else is wrong.
   const bool many =
@@ -115,10 +102,8 @@ std::optional<Busy> BusyMachine::late(const std::vector<Excess>& excesses, const
       static_cast<double>(busy.late) * tuning.busy_one_in >=
           static_cast<double>(busy.components) &&
       static_cast<std::ptrdiff_t>(busy.late) >= std::count(silent.begin(), silent.end(), true);
-  const bool is_abnormal = std::any_of(excesses.begin(), excesses.end(), [](const Excess& excess) {
-    return excess.share > 1 && excess.excuse != Excuse::kAccepted;
-  });
-  if (!many || (!busy_since_ && !(is_abnormal && areUnrelated(late, silent, excesses)))) {
+  if (!many ||
+      (!busy_since_ && !(window.isAbnormal() && areUnrelated(late, silent, window.causes)))) {
     busy_since_.reset();
     return std::nullopt;
   }
@@ -135,23 +120,19 @@ bool BusyMachine::isRecent(std::int64_t stamp, std::int64_t now) {
   return stamp != kNever && now - stamp <= kOneCause;
 }
 
-void BusyMachine::noteLate(const std::vector<Excess>& excesses, const Scorer& scorer,
-                           const RecentEvents& events) {
-  const std::int64_t now = scorer.heard().windowEnd();
-  for (const Excess& excess : excesses) {
+void BusyMachine::noteLate(const Unusual& window) {
+  const std::int64_t now = window.heard().windowEnd();
+  for (const Excess& excess : window.excesses) {
     Lateness& lateness = lateness_[excess.component];
-    const Track& watched = model_->tracks()[excess.track];
     // What was late for long is news no more, but who is held up falls silent now and then.
-    const bool is_held_up = busy_since_ && model_->finding(excess.track) == Finding::kSilent &&
-                            mayHold(watched.to, scorer.heard());
-    const std::size_t after = model_->componentIndex(watched.from);
-    const bool is_between = model_->finding(excess.track) == Finding::kBetween;
+    const bool is_held_up =
+        busy_since_ && excess.finding() == Finding::kSilent && mayHold(excess.id, window.heard());
+    const std::size_t after = model_->componentIndex(excess.from);
+    const bool is_between = excess.finding() == Finding::kBetween;
     const bool is_known =  // to say why takes time
         lateness.last == now && (!is_between || lateness.after.count(after) > 0);
-    if (is_known || excess.excuse == Excuse::kAccepted ||
-        excess.share <= model_->tuning().near_limit ||
-        !(is_held_up ||
-          (!isAbsence(model_->finding(excess.track)) && isOfLate(excess.track, scorer, events)))) {
+    if (is_known || excess.excused == Excused::kAccepted ||
+        excess.share <= model_->tuning().near_limit || !(is_held_up || isOfLate(excess, window))) {
       continue;
     }
     if (!isRecent(lateness.last, now)) {
@@ -166,14 +147,12 @@ void BusyMachine::noteLate(const std::vector<Excess>& excesses, const Scorer& sc
 }
 
 bool BusyMachine::areUnrelated(const std::vector<std::size_t>& late,
-                               const std::vector<bool>& silent,
-                               const std::vector<Excess>& excesses) const {
-  const Explanation::Leads leads = explanation_.leads(excesses);
+                               const std::vector<bool>& silent, const Causes& causes) const {
   for (std::size_t cause = 0; cause < silent.size(); ++cause) {
     if (!silent[cause] && !std::binary_search(late.begin(), late.end(), cause)) {
       continue;
     }
-    const std::vector<bool> downstream = explanation_.downstreamOf(cause, leads);
+    const std::vector<bool> downstream = causes.downstreamOf(cause);
     // Who comes late of itself, or after one that is downstream, too, is no victim.
     const auto isVictim = [&](std::size_t component) {
       const std::set<std::size_t>& after = lateness_[component].after;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+#include <map>
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/evidence/channel/scorer.h"
@@ -15,30 +17,27 @@ namespace self_awareness::core::evidence {
 /// 4.4). What it covers is no evidence; who was silent before is silent still.
 class Settling {
  public:
-  explicit Settling(std::shared_ptr<const Model> model);
+  explicit Settling(std::shared_ptr<const Model> model) : model_(std::move(model)) {}
 
   /// Covers what an event type does up to a stamp [ns]; ignored if the model does not know it.
   void cover(EventId id, std::int64_t until);
   /// Covers what all do but their silence: who sends is heard again before it is unusual.
   void coverAll(std::int64_t until);
-  /// Lets the scorer forget what its sums say of those that have settled since the window before.
+  /// Ends what is over, and lets the scorer forget what its sums say of it.
   /// @param now start of the window [ns]
   void forgetStarts(std::int64_t now, Scorer& scorer);
   /// Takes back what tracks say of what it covers.
-  /// @param now start of the window [ns]
   /// @param evidence by track
-  void leaveOut(std::int64_t now, std::vector<double>& evidence) const;
-  void restart();
+  void leaveOut(std::vector<double>& evidence) const;
+  void restart() {
+    until_.clear();
+    all_until_.reset();
+  }
 
  private:
-  static constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
-
   std::shared_ptr<const Model> model_;
-  std::vector<std::int64_t> until_;  // [ns], by id
-  std::int64_t all_until_ = kNever;  // [ns]
-  std::int64_t latest_ = kNever;     // of all of these [ns]
-  bool any_ = false;                 // something did at the start of the last window
-  std::int64_t last_window_ = 0;     // its start [ns]
+  std::map<EventId, std::int64_t> until_;  // of those that it covers [ns]
+  std::optional<std::int64_t> all_until_;  // [ns]
 };
 
 }  // namespace self_awareness::core::evidence

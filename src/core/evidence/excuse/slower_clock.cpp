@@ -22,60 +22,60 @@ double factorOf(const Suspect& suspect) {
 
 }  // namespace
 
-SlowerClock::SlowerClock(std::shared_ptr<const Model> model, const Explanation& explanation)
-    : model_(std::move(model)), explanation_(explanation) {}
-
-void SlowerClock::excuse(std::vector<Excess>& excesses, const Scorer& scorer,
-                         const RecentEvents& events) {
-  suspects_.clear();
-  if (!isSimulated(scorer.heard().start())) {
-    return;
+std::optional<std::int64_t> SlowerClock::closeWindow(const Unusual& window, Judgement& judgement) {
+  faster_.clear();
+  if (!isSimulated(window.heard().start())) {
+    return std::nullopt;
   }
-  const ByComponent faster = this->faster(excesses, scorer, events);
-  const std::int64_t now = scorer.heard().windowEnd();
-  if (haveNoOtherReason(faster, excesses, scorer.heard())) {
-    if (faster.size() > number_) {
-      number_ = faster.size();
-      reason_ = sendsFaster(number_, factorOf(faster.begin()->second));
+  faster_ = faster(window);
+  const std::int64_t now = window.heard().windowEnd();
+  if (haveNoOtherReason(faster_, window)) {
+    for (const auto& [component, suspect] : faster_) {
+      since_ = std::min(since_.value_or(suspect.onset), suspect.onset);
+    }
+    if (faster_.size() > number_) {
+      number_ = faster_.size();
+      reason_ = sendsFaster(number_, factorOf(faster_.begin()->second));
     }
     last_ = now;
   }
   // When it is over, the sum of one falls sooner than that of another one.
-  if (!last_ || now - *last_ > kHold) {
+  if (!since_ || now - last_ > kHold) {
     restart();
-    return;
+    return std::nullopt;
   }
-  for (const auto& [component, suspect] : faster) {
-    suspects_.push_back(suspect);
-    suspects_.back().reason = reason_;
+  for (const auto& [component, suspect] : faster_) {
+    judgement.suspects.push_back(suspect);
+    judgement.suspects.back().reason = reason_;
   }
-  for (Excess& excess : excesses) {
-    const Track& track = model_->tracks()[excess.track];
-    const bool is_of_them =
-        faster.count(excess.component) > 0 || faster.count(model_->componentIndex(track.from)) > 0;
-    if (excess.excuse == Excuse::kNone && is_of_them && !track.channel->hasShareOfItsOwn() &&
-        !isAbsence(track.channel->finding())) {
-      excess.excuse = Excuse::kSlowerClock;
-    }
-  }
+  return *since_ - kOneCause;
 }
 
-SlowerClock::ByComponent SlowerClock::faster(const std::vector<Excess>& excesses,
-                                             const Scorer& scorer,
-                                             const RecentEvents& events) const {
+bool SlowerClock::explains(const Excess& excess, const Unusual& /*window*/) const {
+  const bool is_of_them = faster_.count(excess.component) > 0 ||
+                          faster_.count(model_->componentIndex(excess.from)) > 0;
+  return is_of_them && !excess.channel->hasShareOfItsOwn() && !excess.isAbsence();
+}
+
+void SlowerClock::restart() {
+  faster_.clear();
+  since_.reset();
+  number_ = 0;
+}
+
+SlowerClock::ByComponent SlowerClock::faster(const Unusual& window) const {
   ByComponent faster;
   std::vector<double> factors;
-  for (const Excess& excess : excesses) {
-    const Track& track = model_->tracks()[excess.track];
+  for (const Excess& excess : window.excesses) {
     // Who does not come any more has kept its sum.
-    const bool comes = scorer.heard().silence(track.to) <= model_->longestGap(track.to);
-    if (excess.excuse == Excuse::kNone && track.channel->kind() == Kind::kFast && comes &&
+    const bool comes = window.heard().silence(excess.id) <= model_->longestGap(excess.id);
+    if (excess.channel->kind() == Kind::kFast && comes &&
         excess.share > model_->tuning().near_limit && faster.count(excess.component) == 0) {
       Suspect suspect;
-      suspect.id = track.to;
+      suspect.id = excess.id;
       suspect.component = model_->components()[excess.component];
       suspect.onset = excess.onset;
-      scorer.explain(excess.track, events, suspect);
+      window.scorer.explain(excess.track, window.events, suspect);
       if (suspect.reason.unit != unit::kHertz) {
         continue;
       }
@@ -91,31 +91,27 @@ SlowerClock::ByComponent SlowerClock::faster(const std::vector<Excess>& excesses
   return faster;
 }
 
-bool SlowerClock::haveNoOtherReason(const ByComponent& faster, const std::vector<Excess>& excesses,
-                                    const Heard& heard) const {
+bool SlowerClock::haveNoOtherReason(const ByComponent& faster, const Unusual& window) const {
   if (faster.size() < 2) {
     return false;
   }
   const bool is_abnormal =
-      std::any_of(excesses.begin(), excesses.end(), [&](const Excess& excess) {
+      std::any_of(window.excesses.begin(), window.excesses.end(), [&](const Excess& excess) {
         return excess.share > 1 && faster.count(excess.component) > 0 &&
-               model_->tracks()[excess.track].channel->kind() == Kind::kFast;
+               excess.channel->kind() == Kind::kFast;
       });
   bool others = false;
   for (EventId id = 0; id < model_->size(); ++id) {
-    others = others || (heard.hasSeen(id) && faster.count(model_->componentIndex(id)) == 0);
+    others =
+        others || (window.heard().hasSeen(id) && faster.count(model_->componentIndex(id)) == 0);
   }
-  if (!is_abnormal || !others) {
-    return false;
-  }
-  const Explanation::Leads leads = explanation_.leads(excesses);
   const auto isRootOfAll = [&](const auto& root) {
-    const std::vector<bool> downstream = explanation_.downstreamOf(root.first, leads);
+    const std::vector<bool> downstream = window.causes.downstreamOf(root.first);
     return std::all_of(faster.begin(), faster.end(), [&](const auto& each) {
       return each.first == root.first || downstream[each.first];
     });
   };
-  return std::none_of(faster.begin(), faster.end(), isRootOfAll);
+  return is_abnormal && others && std::none_of(faster.begin(), faster.end(), isRootOfAll);
 }
 
 }  // namespace self_awareness::core::evidence

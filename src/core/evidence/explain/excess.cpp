@@ -20,9 +20,13 @@ std::vector<Excess>& Excesses::closeWindow(const std::vector<double>& shares,
     }
     const std::int64_t end = scorer.heard().windowEnd();
     const bool lasts = before != excesses_.end() && before->track == track;
+    const Track& watched = model_->tracks()[track];
     Excess excess;
     excess.track = track;
-    excess.component = model_->componentIndex(model_->tracks()[track].to);
+    excess.channel = watched.channel;
+    excess.id = watched.to;
+    excess.from = watched.from;
+    excess.component = model_->componentIndex(watched.to);
     // A level does not know since when it has been so: since it was seen.
     excess.onset = scorer.onset(track).value_or(lasts ? before->onset : end);
     excess.share = shares[track];

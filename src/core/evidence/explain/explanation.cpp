@@ -7,85 +7,22 @@
 #include <tuple>
 #include <utility>
 
-#include "core/evidence/explain/root_first.h"
-
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr std::int64_t kResolution = 1000000;  // of when somebody was missed [ns]
-
 /// Where all are silent, who they are is told, though none of them is to blame.
 bool isNamed(const Excess& excess) {
-  return excess.excuse == Excuse::kNone || excess.excuse == Excuse::kAllSilent;
+  return excess.excused == Excused::kNo || excess.excused == Excused::kAllSilent;
 }
 
 }  // namespace
 
-Explanation::Explanation(std::shared_ptr<const Model> model,
-                         std::shared_ptr<const Upstream> upstream)
-    : model_(std::move(model)), upstream_(std::move(upstream)), tuning_(model_->tuning()) {
-  for (const Track& track : model_->tracks()) {
-    follows_.push_back(follows(track));
-  }
-}
-
-bool Explanation::follows(const Track& track) const {
-  if (model_->component(track.from) == model_->component(track.to) ||
-      model_->vocabulary().tellsMode(track.from)) {
-    return false;
-  }
-  const double period = std::min(model_->meanGap(track.from), model_->meanGap(track.to));
-  return model_->usualDelay(track.from, track.to, 0.5) < period / 2;
-}
-
-Explanation::Leads Explanation::leads(const std::vector<Excess>& excesses) const {
-  Leads usual;
-  Leads unusual;
-  auto excess = excesses.begin();
-  for (std::size_t track = 0; track < follows_.size(); ++track) {
-    excess = std::find_if(excess, excesses.end(),
-                          [track](const Excess& each) { return each.track >= track; });
-    if (follows_[track]) {
-      const bool is_usual = excess == excesses.end() || excess->track != track;
-      const Track& relation = model_->tracks()[track];
-      (is_usual ? usual : unusual)
-          .emplace(model_->componentIndex(relation.from), model_->componentIndex(relation.to));
-    }
-  }
-  Leads leads;
-  for (const auto& [leader, follower] : usual) {
-    if (unusual.count({leader, follower}) == 0 && usual.count({follower, leader}) == 0) {
-      leads.emplace(leader, follower);
-    }
-  }
-  return leads;
-}
-
-std::vector<bool> Explanation::downstreamOf(std::size_t component, const Leads& leads) const {
-  std::vector<bool> downstream(model_->components().size(), false);
-  for (std::size_t other = 0; other < downstream.size(); ++other) {
-    downstream[other] = upstream_->isUpstream(component, other);
-  }
-  for (bool grows = upstream_->empty(); grows;) {
-    grows = false;
-    for (const auto& [leader, follower] : leads) {
-      const bool is_new = (leader == component || downstream[leader]) && !downstream[follower];
-      downstream[follower] = downstream[follower] || is_new;
-      grows = grows || is_new;
-    }
-  }
-  return downstream;
-}
-
-std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
-                                           const Scorer& scorer,
-                                           const RecentEvents& events) const {
+std::vector<Suspect> Explanation::suspects(const Unusual& window) const {
   std::vector<Suspect> suspects;
-  if (std::all_of(excesses.begin(), excesses.end(),
-                  [](const Excess& excess) { return !isNamed(excess); })) {
+  const std::vector<Excess>& excesses = window.excesses;
+  if (std::none_of(excesses.begin(), excesses.end(), isNamed)) {
     return suspects;
   }
-  const Window window{scorer, events, leads(excesses)};
   std::vector<Accused> accused(model_->components().size());
   for (const Excess& excess : excesses) {
     if (isNamed(excess)) {
@@ -94,14 +31,18 @@ std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
   }
   for (EventId id = 0; id < model_->size(); ++id) {
     Accused& each = accused[model_->componentIndex(id)];
-    each.alive = each.alive || (scorer.heard().hasSeen(id) && each.main != nullptr &&
-                                scorer.heard().stamps()[id] > each.latest);
+    each.alive = each.alive || (window.heard().hasSeen(id) && each.main != nullptr &&
+                                window.heard().stamps()[id] > each.latest);
   }
   for (const Accused& each : order(std::move(accused), window)) {
     if (suspects.size() < kMostSuspects || each.abnormal) {
       Suspect suspect = suspectOf(*each.main, window);
       suspect.abnormal = each.abnormal;
-      suspect.missed = each.sure ? missedAt(*each.main, window) : 0;
+      if (each.main->finding() == Finding::kSilent && each.main->share > 1) {
+        const double near = tuning_.near_limit * window.limits_of_silence[suspect.id];
+        suspect.missed = window.heard().windowEnd() - window.heard().age(suspect.id) +
+                         model_->ageBeyond(suspect.id, near);  // stalls do not count in its age
+      }
       if (each.alive && suspect.reason.kind == Kind::kSilent) {
         suspect.reason.kind =
             suspect.reason.after.empty() ? Kind::kTopicSilent : Kind::kUnanswered;
@@ -117,64 +58,43 @@ std::vector<Suspect> Explanation::suspects(const std::vector<Excess>& excesses,
   return suspects;
 }
 
-Suspect Explanation::suspectOf(const Excess& excess, const Window& window) const {
+Suspect Explanation::suspectOf(const Excess& excess, const Unusual& window) const {
   Suspect suspect;
-  suspect.id = trackOf(excess).to;
+  suspect.id = excess.id;
   suspect.component = model_->components()[excess.component];
   suspect.onset = excess.onset;
   window.scorer.explain(excess.track, window.events, suspect);
   return suspect;
 }
 
-std::int64_t Explanation::missedAt(const Excess& excess, const Window& window) const {
-  const EventId id = trackOf(excess).to;
-  const std::int64_t age = window.scorer.heard().age(id);
-  if (model_->finding(excess.track) != Finding::kSilent || excess.share < 1) {
-    return 0;
+bool Explanation::isAbsent(const Excess& excess, const Unusual& window) const {
+  if (excess.share > 1 || excess.finding() != Finding::kSilent) {
+    return excess.isAbsence() && excess.share > tuning_.near_limit;
   }
-  const double near = model_->overdue(id, age) / excess.share * tuning_.near_limit;
-  std::int64_t from = 0;
-  for (std::int64_t to = age; to - from > kResolution;) {
-    const std::int64_t middle = from + (to - from) / 2;
-    (model_->overdue(id, middle) < near ? from : to) = middle;
-  }
-  // Stalls do not count in its age.
-  return window.scorer.heard().windowEnd() - (age - from);
+  const std::int64_t silence = window.heard().listenedFor(excess.id);
+  return silence > model_->longestGap(excess.id) && model_->isRare(excess.id, silence);
 }
 
-bool Explanation::isAbsent(const Excess& excess, const Window& window) const {
-  const Finding finding = model_->finding(excess.track);
-  if (excess.share > 1 || finding != Finding::kSilent) {
-    return isAbsence(finding) && excess.share > tuning_.near_limit;
-  }
-  const EventId id = trackOf(excess).to;
-  const std::int64_t silence = window.scorer.heard().listenedFor(id);
-  return silence > model_->longestGap(id) &&
-         model_->logSurvival(id, silence) < std::log(tuning_.rare_silence);
-}
-
-void Explanation::accuse(const Excess& excess, const Window& window,
+void Explanation::accuse(const Excess& excess, const Unusual& window,
                          std::vector<Accused>& accused) const {
-  const Track& track = trackOf(excess);
-  const Finding finding = model_->finding(excess.track);
+  const std::size_t from = model_->componentIndex(excess.from);
   Accused& later = accused[excess.component];
   Accused* unusual = &later;
   Wrong wrong = excess.share > tuning_.near_limit ? Wrong::kOwn : Wrong::kOther;
-  if (isAbsence(finding)) {
+  if (excess.isAbsence()) {
     // An age that is usual has some share of its limit, too, and so has a request of now.
     if (!isAbsent(excess, window)) {
       return;
     }
     wrong = Wrong::kAbsent;
-  } else if (finding == Finding::kBetween &&
-             model_->component(track.from) != model_->component(track.to)) {
+  } else if (excess.finding() == Finding::kBetween && from != excess.component) {
     // That what comes before it is late makes its delays shorter.
     if (suspectOf(excess, window).reason.kind == Kind::kEarly) {
-      unusual = &accused[model_->componentIndex(track.from)];
+      unusual = &accused[from];
       wrong = Wrong::kOther;
     } else if (wrong == Wrong::kOwn) {
       wrong = Wrong::kLate;
-      later.after.insert(model_->componentIndex(track.from));
+      later.after.insert(from);
     }
   }
   unusual->sum += excess.share;
@@ -184,8 +104,8 @@ void Explanation::accuse(const Excess& excess, const Window& window,
   // way round.
   const auto rank = [&](const Excess& each, Wrong how) {
     const bool is_silent =
-        how == Wrong::kAbsent && each.share > 1 && model_->finding(each.track) == Finding::kSilent;
-    const bool is_lossy = trackOf(each).channel->kind() == Kind::kLossy;
+        how == Wrong::kAbsent && each.share > 1 && each.finding() == Finding::kSilent;
+    const bool is_lossy = each.channel->kind() == Kind::kLossy;
     return std::tuple(!is_silent, std::max(how, Wrong::kOwn), !is_lossy, -each.share);
   };
   if (later.main == nullptr || rank(excess, wrong) < rank(*later.main, later.wrong)) {
@@ -193,15 +113,15 @@ void Explanation::accuse(const Excess& excess, const Window& window,
     later.wrong = wrong;
   }
   if (wrong == Wrong::kAbsent) {
-    const double usual = finding == Finding::kUnanswered ? 0 : model_->meanGap(track.to);
+    const double usual = excess.finding() == Finding::kUnanswered ? 0 : model_->meanGap(excess.id);
     later.due = std::min(later.due, excess.onset + static_cast<std::int64_t>(usual));
-    later.latest = std::max(later.latest, excess.onset + model_->longestGap(track.to));
+    later.latest = std::max(later.latest, excess.onset + model_->longestGap(excess.id));
     later.near = later.near || excess.share > tuning_.near_limit;
     later.sure = later.sure || excess.share > 1;
   }
 }
 
-void Explanation::setUnlikelyAside(std::vector<Accused>& accused, const Window& window) const {
+void Explanation::setUnlikelyAside(std::vector<Accused>& accused, const Unusual& window) const {
   auto left = std::partition(accused.begin(), accused.end(), [](const Accused& each) {
     return each.sure || each.wrong != Wrong::kAbsent;
   });
@@ -209,10 +129,10 @@ void Explanation::setUnlikelyAside(std::vector<Accused>& accused, const Window& 
     found = std::find_if(left, accused.end(), [&](const Accused& each) {
       return std::any_of(accused.begin(), left, [&](const Accused& victim) {
         // Where nobody knows who hears whom, it is who was missed first.
-        const bool is_earlier = upstream_->empty() && each.near &&
+        const bool is_earlier = window.causes.areGuessed() && each.near &&
                                 victim.wrong == Wrong::kAbsent && each.due < victim.due;
         return (victim.abnormal || victim.wrong == Wrong::kAbsent) &&
-               (is_earlier || isRoot(each, victim, window.leads));
+               (is_earlier || isRoot(each, victim, window.causes));
       });
     });
     if (found != accused.end()) {
@@ -247,7 +167,7 @@ void Explanation::setExplainedAside(std::vector<Accused>& accused) {
 }
 
 std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accused,
-                                                     const Window& window) const {
+                                                     const Unusual& window) const {
   accused.erase(std::remove_if(accused.begin(), accused.end(),
                                [](const Accused& each) { return each.main == nullptr; }),
                 accused.end());
@@ -277,43 +197,40 @@ std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accuse
   std::stable_partition(ordered.begin(), ordered.end(), [&](const Accused& each) {
     return each.wrong == Wrong::kOwn &&
            std::any_of(absent.begin(), absent.end(), [&](const Accused& victim) {
-             return isRoot(each, victim, window.leads) &&
-                    owesNothing(trackOf(*victim.main).to, trackOf(*each.main).to, window);
+             return isRoot(each, victim, window.causes) &&
+                    owesNothing(victim.main->id, each.main->id, window);
            });
   });
   return ordered;
 }
 
 std::vector<Explanation::Accused> Explanation::rootFirst(const std::vector<Accused>& accused,
-                                                         const Window& window) const {
+                                                         const Unusual& window) const {
   std::vector<Accused> ordered;
   for (const std::size_t next :
        evidence::rootFirst(accused.size(), [&](std::size_t root, std::size_t victim) {
-         return isRoot(accused[root], accused[victim], window.leads);
+         return isRoot(accused[root], accused[victim], window.causes);
        })) {
     ordered.push_back(accused[next]);
   }
   return ordered;
 }
 
-bool Explanation::isRoot(const Accused& root, const Accused& victim, const Leads& leads) const {
-  const std::size_t from = root.component;
-  const std::size_t to = victim.component;
+bool Explanation::isRoot(const Accused& root, const Accused& victim, const Causes& causes) const {
   // Who fell silent only when the other one should have come is not why it did not; nor is who is
   // hardly silent, and should have come when the other one was missed already.
   const bool too_late = root.wrong == Wrong::kAbsent && victim.wrong == Wrong::kAbsent &&
                         (root.sure ? root.main->onset > victim.latest
                                    : root.main->onset > victim.due || root.due > victim.latest);
-  return !too_late && (upstream_->isUpstream(from, to) ||
-                       (leads.count({from, to}) > 0 && !upstream_->isUpstream(to, from)));
+  return !too_late && causes.isRoot(root.component, victim.component);
 }
 
-bool Explanation::owesNothing(EventId follower, EventId leader, const Window& window) const {
+bool Explanation::owesNothing(EventId follower, EventId leader, const Unusual& window) const {
   const double gap = model_->meanGap(leader);
   const double usual = std::max(1.0, std::round(model_->meanGap(follower) / gap));
   const auto since = static_cast<double>(window.events.since(leader, follower));
   return since < usual ||
-         (since == usual && static_cast<double>(window.scorer.heard().age(leader)) < gap / 2);
+         (since == usual && static_cast<double>(window.heard().age(leader)) < gap / 2);
 }
 
 bool Explanation::isUsual(const Suspect& suspect) const {

@@ -5,13 +5,10 @@
 #include <limits>
 #include <memory>
 #include <set>
-#include <utility>
 #include <vector>
 
-#include "core/evidence/channel/scorer.h"
-#include "core/evidence/explain/excess.h"
-#include "core/evidence/watch/recent_events.h"
-#include "core/evidence/watch/upstream.h"
+#include "core/evidence/explain/unusual.h"
+#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
@@ -21,25 +18,13 @@ namespace self_awareness::core::evidence {
 /// is upstream of others, or followed by them as usual, comes first.
 class Explanation {
  public:
-  /// Pairs of components, by number, of which the second follows the first, and does so as usual:
-  /// what is wrong with both of them began with the first. It needs no graph.
-  using Leads = std::set<std::pair<std::size_t, std::size_t>>;
+  explicit Explanation(std::shared_ptr<const Model> model)
+      : model_(std::move(model)), tuning_(model_->tuning()) {}
 
-  /// @param upstream may be empty: only what usually follows what then says who is the root
-  Explanation(std::shared_ptr<const Model> model, std::shared_ptr<const Upstream> upstream);
-
-  /// @param excesses all that is unusual in the window that the scorer closed last
-  /// @param events of the scorer's recording
   /// @return one suspect for each component with an excess that is not excused, the most likely
   /// first: at most kMostSuspects, and further ones whose evidence alone is abnormal. Nobody whose
   /// numbers are usual
-  std::vector<Suspect> suspects(const std::vector<Excess>& excesses, const Scorer& scorer,
-                                const RecentEvents& events) const;
-  /// @param excesses all that is unusual
-  Leads leads(const std::vector<Excess>& excesses) const;
-  /// Who gets messages of a component, or, where nobody knows who hears whom, follows it, or who
-  /// does; by the number of the component.
-  std::vector<bool> downstreamOf(std::size_t component, const Leads& leads) const;
+  std::vector<Suspect> suspects(const Unusual& window) const;
 
  private:
   /// What is wrong with a component, the likeliest to be a cause first.
@@ -61,39 +46,27 @@ class Explanation {
     bool sure = false;
     bool alive = false;
   };
-  struct Window {
-    const Scorer& scorer;
-    const RecentEvents& events;
-    Leads leads;
-  };
-
-  bool follows(const Track& track) const;
-  const Track& trackOf(const Excess& excess) const { return model_->tracks()[excess.track]; }
-  Suspect suspectOf(const Excess& excess, const Window& window) const;
-  /// When a silence that is beyond its limit was near it [ns]; 0: it says something else.
-  std::int64_t missedAt(const Excess& excess, const Window& window) const;
+  Suspect suspectOf(const Excess& excess, const Unusual& window) const;
   /// Whether it says that its type has not come, for longer than is usual.
-  bool isAbsent(const Excess& excess, const Window& window) const;
-  void accuse(const Excess& excess, const Window& window, std::vector<Accused>& accused) const;
+  bool isAbsent(const Excess& excess, const Unusual& window) const;
+  void accuse(const Excess& excess, const Unusual& window, std::vector<Accused>& accused) const;
   /// Who is absent, but not beyond its limit, is the root of who is to blame, or hardly is: then
   /// it is among the rest.
-  void setUnlikelyAside(std::vector<Accused>& accused, const Window& window) const;
+  void setUnlikelyAside(std::vector<Accused>& accused, const Unusual& window) const;
   /// So is who is late only after those that something else is wrong with.
   static void setExplainedAside(std::vector<Accused>& accused);
   /// Those with something wrong, ordered.
-  std::vector<Accused> order(std::vector<Accused> accused, const Window& window) const;
-  std::vector<Accused> rootFirst(const std::vector<Accused>& accused, const Window& window) const;
-  bool isRoot(const Accused& root, const Accused& victim, const Leads& leads) const;
+  std::vector<Accused> order(std::vector<Accused> accused, const Unusual& window) const;
+  std::vector<Accused> rootFirst(const std::vector<Accused>& accused, const Unusual& window) const;
+  bool isRoot(const Accused& root, const Accused& victim, const Causes& causes) const;
   /// Whether no more messages of the leader came since the follower's last one than usually do
   /// between two of the follower's; the last of them has half a mean gap to be answered.
-  bool owesNothing(EventId follower, EventId leader, const Window& window) const;
+  bool owesNothing(EventId follower, EventId leader, const Unusual& window) const;
   /// Whether what is said of a suspect is what it usually does.
   bool isUsual(const Suspect& suspect) const;
 
   std::shared_ptr<const Model> model_;
-  std::shared_ptr<const Upstream> upstream_;
   const Tuning& tuning_;
-  std::vector<bool> follows_;  // whether `to` usually comes soon after `from`, by track
 };
 
 }  // namespace self_awareness::core::evidence

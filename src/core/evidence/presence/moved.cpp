@@ -156,6 +156,7 @@ bool Moved::any() const {
 std::vector<Suspect> Moved::suspects(bool all) const {
   struct Taker {
     EventId id = 0;
+    std::int64_t first = 0;
     std::int64_t last = 0;
     std::set<std::string> topics;
     std::set<std::string> before;
@@ -166,9 +167,12 @@ std::vector<Suspect> Moved::suspects(bool all) const {
     if (sent_.at(id).accepted || !(all || expected_[known])) {
       continue;
     }
-    Taker& taker = takers.try_emplace(typeOf(id).source, Taker{id, 0, {}, {}}).first->second;
+    const Sent& sent = sent_.at(id);
+    Taker& taker =
+        takers.try_emplace(typeOf(id).source, Taker{id, sent.first, 0, {}, {}}).first->second;
     taker.id = std::min(taker.id, id);
-    taker.last = std::max(taker.last, sent_.at(id).last);
+    taker.first = std::min(taker.first, sent.first);
+    taker.last = std::max(taker.last, sent.last);
     taker.topics.insert(typeOf(id).scope);
     taker.before.insert(model_->vocabulary().at(known).source);
   }
@@ -178,6 +182,7 @@ std::vector<Suspect> Moved::suspects(bool all) const {
     suspect.id = taker.id;
     suspect.component = source;
     suspect.abnormal = true;
+    suspect.onset = taker.first;
     suspect.reason =
         movedTo(source, of_source_.count(source) > 0, {taker.topics.begin(), taker.topics.end()},
                 {taker.before.begin(), taker.before.end()}, toSeconds(now_ - taker.last));

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/evidence/explain/root_first.h"
+#include "core/evidence/explain/causes.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -190,6 +190,7 @@ std::vector<Suspect> NeverHeard::suspects() const {
     suspect.id = expected.id;
     suspect.component = component(expected.id);
     suspect.abnormal = expected.share > 1;
+    suspect.onset = *start_;
     suspect.reason = reasonOf(expected);
     suspects.push_back(suspect);
   }

@@ -80,6 +80,7 @@ std::vector<Suspect> TwoSenders::suspects(const Heard& heard) const {
     suspect.id = id;
     suspect.component = source;
     suspect.abnormal = lasting_;
+    suspect.onset = since_.value_or(0);
     suspect.reason = reason;
     suspects.push_back(std::move(suspect));
   }

@@ -75,6 +75,7 @@ void Unsubscribed::closeWindow(std::int64_t end) {
   for (const auto& [component, topics] : late) {
     if (ids_.count(component) > 0) {
       suspects_.push_back(suspect(component, topics));
+      suspects_.back().onset = *missing_.at({component, topics.front()}).since;
     }
   }
 }

@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "../tracks.h"
+#include "../moment.h"
+#include "core/evidence/excuse/excuses.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -50,7 +51,17 @@ class BusyMachineTest : public testing::Test {
 
   std::optional<Busy> excuse(const std::vector<double>& shares) {
     excesses_ = excessesOf(model_, shares, scorer_);
-    return machine_.excuse(excesses_, scorer_, events_);
+    return excuse();
+  }
+  std::optional<Busy> excuse() {
+    Judgement judgement;
+    machine_.closeWindow(excesses_, moment_.in(excesses_, scorer_, events_), judgement);
+    return judgement.busy;
+  }
+  static Excuses::List listOf(const std::shared_ptr<const Model>& model) {
+    Excuses::List list;
+    list.push_back(std::make_unique<BusyMachine>(model));
+    return list;
   }
 
   const std::vector<EventType> types_ = numberedTypes(kComponents);
@@ -60,8 +71,8 @@ class BusyMachineTest : public testing::Test {
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
   Scorer scorer_{model_, kWindow};
   RecentEvents events_{model_->size()};
-  Explanation explanation_{model_, std::make_shared<Upstream>(model_->components(), graph_)};
-  BusyMachine machine_{model_, explanation_};
+  Moment moment_{model_, graph_};
+  Excuses machine_{model_, listOf(model_)};
   std::vector<Excess> excesses_;
   std::int64_t now_ = 60 * kSecond;
 };
@@ -80,7 +91,7 @@ TEST_F(BusyMachineTest, WhoWasLateLongBeforeTheOthersIsSoForAnotherReason) {
   for (Excess& excess : excesses_) {
     excess.onset = excess.component == 1 ? alone_until - 30 * kSecond : now_ - kSecond;
   }
-  const std::optional<Busy> busy = machine_.excuse(excesses_, scorer_, events_);
+  const std::optional<Busy> busy = excuse();
   ASSERT_TRUE(busy);
   EXPECT_GT(busy->since, alone_until - 20 * kSecond);
   EXPECT_LT(busy->since, alone_until) << "a load that grows makes one after the other late";
@@ -115,13 +126,16 @@ TEST_F(BusyMachineTest, ItIsNotWhileAllAreWithinTheirLimits) {
 TEST_F(BusyMachineTest, WhatBeganBeforeIsNotExcused) {
   ASSERT_TRUE(at(1.2, 1, 5));
   const auto excuseOf = [&](std::int64_t onset, EventId id, const char* channel) {
-    excesses_ = {{indexOf(model_->tracks(), channel, id, id), id, onset, 1.5, Excuse::kNone}};
-    machine_.excuse(excesses_, scorer_, events_);
-    return excesses_.front().excuse;
+    std::vector<double> shares = allTracks(*model_, 0);
+    ofTrack(shares, *model_, channel, id) = 1.5;
+    excesses_ = excessesOf(model_, shares, scorer_);
+    excesses_.front().onset = onset;
+    excuse();
+    return excesses_.front().excused;
   };
-  EXPECT_EQ(excuseOf(now_, 1, kSlower), Excuse::kBusy);
-  EXPECT_EQ(excuseOf(now_ - 20 * kSecond, 1, kSlower), Excuse::kNone);
-  EXPECT_EQ(excuseOf(now_, 1, kAge), Excuse::kNone) << "what they hold is another thing";
+  EXPECT_EQ(excuseOf(now_, 1, kSlower), Excused::kBusy);
+  EXPECT_EQ(excuseOf(now_ - 20 * kSecond, 1, kSlower), Excused::kNo);
+  EXPECT_EQ(excuseOf(now_, 1, kAge), Excused::kNo) << "what they hold is another thing";
 }
 
 TEST_F(BusyMachineTest, ItIsStarvedWhileProcessesWait) {

@@ -1,13 +1,14 @@
+#include "core/evidence/excuse/excuses.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <vector>
 
-#include "../tracks.h"
-#include "core/evidence/excuse/busy_machine.h"
-#include "core/evidence/excuse/stopped_together.h"
+#include "../moment.h"
 
 /// What holds for all excuses, whatever a robot does (docs/method.md, section 6).
 namespace self_awareness::core::evidence {
@@ -55,19 +56,22 @@ class ExcusesTest : public testing::Test {
       excess.onset -= chance(0.2) ? 60 * kSecond : 0;
     }
   }
-  std::optional<Silent> stoppedTogether(std::vector<Excess>& excesses) {
-    return StoppedTogether(model_, upstream_, graph_)
-        .excuse(excesses, allLimits(*model_, 1), *scorer_, {},
-                std::vector<bool>(model_->size(), false))
-        .silent;
+  /// What they say of that moment, in whatever order, and what they excuse.
+  Judgement excuse(const std::vector<std::size_t>& order, std::vector<Excess>& excesses) {
+    Excuses::List all = allExcuses(model_, graph_);
+    Excuses::List list;
+    for (const std::size_t each : order) {
+      list.push_back(std::move(all.at(each)));
+    }
+    Judgement judgement;
+    Excuses(model_, std::move(list))
+        .closeWindow(excesses, moment_.in(excesses, *scorer_, events_), judgement);
+    return judgement;
   }
-  std::optional<Busy> busyMachine(std::vector<Excess>& excesses) {
-    return BusyMachine(model_, explanation_).excuse(excesses, *scorer_, events_);
-  }
-  static std::vector<bool> excused(const std::vector<Excess>& excesses) {
-    std::vector<bool> excused;
+  static std::vector<Excused> excused(const std::vector<Excess>& excesses) {
+    std::vector<Excused> excused;
     for (const Excess& excess : excesses) {
-      excused.push_back(excess.excuse != Excuse::kNone);
+      excused.push_back(excess.excused);
     }
     return excused;
   }
@@ -76,9 +80,7 @@ class ExcusesTest : public testing::Test {
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
   std::shared_ptr<const Model> model_ = std::make_shared<Model>(
       watchAll(countsOf({robot(0, 100)}, types_), countsOf({robot(kStart, 200)}, types_)));
-  std::shared_ptr<const Upstream> upstream_ =
-      std::make_shared<Upstream>(model_->components(), graph_);
-  Explanation explanation_{model_, upstream_};
+  Moment moment_{model_, graph_};
   RecentEvents events_{model_->size()};
   std::unique_ptr<Scorer> scorer_;
   std::vector<Excess> drawn_;
@@ -88,14 +90,19 @@ TEST_F(ExcusesTest, TheirOrderDoesNotMatter) {
   int both = 0;
   for (unsigned seed = 0; seed < 500; ++seed) {
     draw(seed);
+    std::vector<std::size_t> order(allExcuses(model_, graph_).size());
+    std::iota(order.begin(), order.end(), 0);
     std::vector<Excess> first = drawn_;
-    std::vector<Excess> second = drawn_;
-    const bool stopped = stoppedTogether(first).has_value();
-    const bool busy = busyMachine(first).has_value();
-    both += stopped && busy ? 1 : 0;
-    EXPECT_EQ(busyMachine(second).has_value(), busy) << seed;
-    EXPECT_EQ(stoppedTogether(second).has_value(), stopped) << seed;
-    EXPECT_EQ(excused(first), excused(second)) << seed;
+    const Judgement told = excuse(order, first);
+    const std::vector<Excused> reasons = excused(first);
+    both += told.busy && std::count(reasons.begin(), reasons.end(), Excused::kNewMode) > 0 ? 1 : 0;
+    while (std::next_permutation(order.begin(), order.end())) {
+      std::vector<Excess> second = drawn_;
+      const Judgement again = excuse(order, second);
+      EXPECT_EQ(again.busy.has_value(), told.busy.has_value()) << seed;
+      EXPECT_EQ(again.silent.has_value(), told.silent.has_value()) << seed;
+      EXPECT_EQ(excused(second), reasons) << seed;
+    }
   }
   EXPECT_GT(both, 10);
 }
@@ -104,21 +111,17 @@ TEST_F(ExcusesTest, WhatBeganBeforeAnExcuseIsNotCovered) {
   int excuses = 0;
   for (unsigned seed = 0; seed < 500; ++seed) {
     draw(seed);
-    for (const bool is_busy : {false, true}) {
+    const std::size_t number = allExcuses(model_, graph_).size();
+    for (std::size_t each = 0; each < number; ++each) {
       std::vector<Excess> excesses = drawn_;
-      std::optional<std::int64_t> since;
-      if (is_busy) {
-        const std::optional<Busy> busy = busyMachine(excesses);
-        since = busy ? std::optional(busy->since) : std::nullopt;
-      } else if (const std::optional<Silent> silent = stoppedTogether(excesses)) {
-        since = silent->since;
-      }
-      excuses += since ? 1 : 0;
+      const Judgement told = excuse({each}, excesses);
+      excuses += told.busy || told.silent ? 1 : 0;
       for (const Excess& excess : excesses) {
-        const EventId id = model_->tracks()[excess.track].to;
-        const std::int64_t before =
-            is_busy ? excess.onset : scorer_->heard().stamps()[id] + model_->longestGap(id);
-        EXPECT_TRUE(excess.excuse == Excuse::kNone || before + kRateSpan >= since.value()) << seed;
+        if (excess.excused != Excused::kNo) {
+          const std::int64_t usual = excess.isTooLittle() ? model_->longestPause(excess.id) : 0;
+          EXPECT_GE(excess.onset + usual, told.busy ? told.busy->since : told.silent->since)
+              << seed;
+        }
       }
     }
   }

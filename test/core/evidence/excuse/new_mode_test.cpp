@@ -79,7 +79,7 @@ TEST_F(NewModeTest, AVictimIsNoneOfTheFour) {
 }
 
 TEST_F(NewModeTest, WhoMayBeSilentIsNoneOfTheFour) {
-  may_be_silent_[2] = true;
+  moment_->may_be_silent[2] = true;
   EXPECT_FALSE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
   EXPECT_EQ(share(0), 2);
   const std::optional<Silent> silent = excuse({kAgo, kAgo, kAgo, kAgo, 0, kAgo});

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "../judged.h"
-#include "../tracks.h"
+#include "../moment.h"
 #include "core/evidence/presence/strangers.h"
 
 namespace self_awareness::core::evidence {
@@ -56,9 +56,9 @@ class ExplanationTest : public testing::Test {
       ofTrack(shares, *model_, channelName(track), track.to, track.from) = share;
     }
     scorer_.closeWindow(end);
+    const std::vector<Excess> excesses = excessesOf(model_, shares, scorer_);
     std::vector<Suspect> named =
-        Explanation(model_, std::make_shared<Upstream>(model_->components(), graph_))
-            .suspects(excessesOf(model_, shares, scorer_), scorer_, events_);
+        Explanation(model_).suspects(Moment(model_, graph_).in(excesses, scorer_, events_));
     Strangers(*model_, nullptr, graph_)
         .addUnknown(window, std::numeric_limits<std::int64_t>::min(), named);
     return named;

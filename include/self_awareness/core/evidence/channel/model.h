@@ -81,8 +81,13 @@ class Model {
   /// Natural logarithm of the probability of a gap of at least this age [ns] between two events of
   /// the type (docs/method.md, section 6). 0 if the type is too rare to be judged.
   double logSurvival(EventId id, std::int64_t age) const;
+  /// Whether a silence [ns] is so long as gaps in training rarely were.
+  bool isRare(EventId id, std::int64_t silence) const;
   /// Longest gap between two events of the type in training [ns]; 0 if there was none.
   std::int64_t longestGap(EventId id) const { return statistics_.type(id).longestGap(); }
+  /// For so long, a type may be silent with others that fell silent at one moment: its longest gap,
+  /// and what a moment is [ns].
+  std::int64_t longestPause(EventId id) const { return longestGap(id) + kRateSpan; }
   /// Longest time without any event in training that was no stall of the machine [ns].
   std::int64_t longestSilence() const;
   /// Longest stall of the machine in training [ns]; 0: there was none.

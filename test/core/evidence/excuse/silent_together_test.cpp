@@ -26,9 +26,9 @@ Events robot(std::int64_t start, unsigned seed) {
   return events;
 }
 
-class StoppedTogetherTest : public StoppedTest {
+class SilentTogetherTest : public StoppedTest {
  protected:
-  StoppedTogetherTest() : StoppedTest(kRobot) {
+  SilentTogetherTest() : StoppedTest(kRobot) {
     for (const std::string source : {"/laser", "/imu", "/battery"}) {
       graph_->place(source, "base");
     }
@@ -42,7 +42,7 @@ class StoppedTogetherTest : public StoppedTest {
   }
 };
 
-TEST_F(StoppedTogetherTest, AComputerOfWhichNobodyIsHeardIsFound) {
+TEST_F(SilentTogetherTest, AComputerOfWhichNobodyIsHeardIsFound) {
   const std::optional<Silent> silent = find({kAgo, kAgo + 1, kAgo + kSecond, 0, 0});
   ASSERT_TRUE(silent);
   EXPECT_EQ(silent->hosts, Strings{"base"});
@@ -50,16 +50,16 @@ TEST_F(StoppedTogetherTest, AComputerOfWhichNobodyIsHeardIsFound) {
   EXPECT_EQ(silent->since, kEnd - kAgo);
 }
 
-TEST_F(StoppedTogetherTest, ItIsNotFoundWhereOneOfItsNodesIsHeard) {
+TEST_F(SilentTogetherTest, ItIsNotFoundWhereOneOfItsNodesIsHeard) {
   EXPECT_FALSE(find({kAgo, kAgo, 0, 0, 0}));
   EXPECT_FALSE(find({kAgo, kAgo, kSecond, 0, 0})) << "the slow one may yet come";
-  strangers_["/new"] = kSecond;
+  moment_->strangers["/new"] = kSecond;
   graph_->place("/new", "base");
   EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}))
       << "somebody there is heard whom the model does not know";
 }
 
-TEST_F(StoppedTogetherTest, WhoFellSilentLongBeforeTheOthersDidNotDoSoWithThem) {
+TEST_F(SilentTogetherTest, WhoFellSilentLongBeforeTheOthersDidNotDoSoWithThem) {
   const std::optional<Silent> on_host = find({2 * kAgo, kAgo, kAgo, 0, 0});
   ASSERT_TRUE(on_host);
   EXPECT_EQ(on_host->components, (Strings{"/battery", "/imu"}));
@@ -69,7 +69,7 @@ TEST_F(StoppedTogetherTest, WhoFellSilentLongBeforeTheOthersDidNotDoSoWithThem) 
   EXPECT_EQ(all->components, (Strings{"/battery", "/camera", "/faces", "/imu"}));
 }
 
-TEST_F(StoppedTogetherTest, AMomentWithoutTheOthersTakesNobodysDeathAway) {
+TEST_F(SilentTogetherTest, AMomentWithoutTheOthersTakesNobodysDeathAway) {
   EXPECT_FALSE(find({kAgo, 5 * kSecond, 5 * kSecond, 5 * kSecond, 5 * kSecond}, 0.5))
       << "a silence that is rare, and far from any limit";
   for (const EventType& type : kRobot) {
@@ -78,18 +78,18 @@ TEST_F(StoppedTogetherTest, AMomentWithoutTheOthersTakesNobodysDeathAway) {
   EXPECT_FALSE(find({kAgo, kAgo, kAgo, kAgo, 2 * kSecond})) << "one alone";
 }
 
-TEST_F(StoppedTogetherTest, WhoIsFarFromItsLimitProvesNothing) {
+TEST_F(SilentTogetherTest, WhoIsFarFromItsLimitProvesNothing) {
   EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}, 0.5));
 }
 
-TEST_F(StoppedTogetherTest, WhereNobodyIsHeardItIsAll) {
+TEST_F(SilentTogetherTest, WhereNobodyIsHeardItIsAll) {
   const std::optional<Silent> silent = find({kAgo, kAgo, kAgo, kAgo, kAgo});
   ASSERT_TRUE(silent);
   EXPECT_TRUE(silent->hosts.empty());
   EXPECT_EQ(silent->components.size(), 5U);
 }
 
-TEST_F(StoppedTogetherTest, WithoutComputersOnlyAllAreSilentTogether) {
+TEST_F(SilentTogetherTest, WithoutComputersOnlyAllAreSilentTogether) {
   for (const EventType& type : kRobot) {
     graph_->place(type.source, "");
   }
@@ -101,7 +101,7 @@ TEST_F(StoppedTogetherTest, WithoutComputersOnlyAllAreSilentTogether) {
   EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0})) << "all run on one";
 }
 
-TEST_F(StoppedTogetherTest, SeveralComputersAreNamedTogether) {
+TEST_F(SilentTogetherTest, SeveralComputersAreNamedTogether) {
   graph_->place("/battery", "dock");
   const std::optional<Silent> silent = find({kAgo, kAgo, 0, kAgo, kAgo});
   ASSERT_TRUE(silent);

@@ -1,0 +1,52 @@
+#include "core/evidence/excuse/excuses.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/evidence/excuse/busy_machine.h"
+#include "core/evidence/excuse/new_mode.h"
+#include "core/evidence/excuse/silent_together.h"
+#include "core/evidence/excuse/slower_clock.h"
+
+namespace self_awareness::core::evidence {
+
+void Excuses::closeWindow(std::vector<Excess>& excesses, const Unusual& window,
+                          Judgement& judgement) {
+  for (const std::unique_ptr<Excuse>& excuse : list_) {
+    const std::optional<std::int64_t> since = excuse->closeWindow(window, judgement);
+    for (Excess& excess : excesses) {
+      const std::int64_t usual = excess.isTooLittle() ? model_->longestPause(excess.id) : 0;
+      if (since && excess.onset + usual >= *since && excuse->explains(excess, window)) {
+        excess.excused = std::min(excess.excused, excuse->reason());
+      }
+    }
+  }
+  if (judgement.busy && judgement.silent && judgement.silent->others_go_on) {
+    judgement.silent.reset();  // whom a busy machine holds up
+  }
+}
+
+void Excuses::accept(const Acceptances& accepted) {
+  for (const std::unique_ptr<Excuse>& excuse : list_) {
+    excuse->accept(accepted);
+  }
+}
+
+void Excuses::restart() {
+  for (const std::unique_ptr<Excuse>& excuse : list_) {
+    excuse->restart();
+  }
+}
+
+Excuses::List allExcuses(const std::shared_ptr<const Model>& model,
+                         const std::shared_ptr<const SourceGraph>& graph) {
+  Excuses::List list;
+  // First, since what is accepted says nothing to the others.
+  list.push_back(std::make_unique<NewMode>(model));
+  list.push_back(std::make_unique<SilentTogether>(model, graph));
+  list.push_back(std::make_unique<SlowerClock>(model));
+  list.push_back(std::make_unique<BusyMachine>(model));
+  return list;
+}
+
+}  // namespace self_awareness::core::evidence
