@@ -9,7 +9,7 @@ namespace self_awareness::core::paper {
 namespace {
 
 // Number of pairs that are worked on together.
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kPairsAtOnce = 64;
 
 }  // namespace
 
@@ -30,12 +30,12 @@ void DelayTrainer::add(const Event& event) {
   const std::uint64_t mark = bins_.mark(event.stamp);
   Histogram* const pairs = statistics_.pairsTo(event.id).data();
   // All slots of a block are fetched before the first one is needed: so they arrive together.
-  std::array<EventId, kBlock> block;
-  std::array<std::int64_t, kBlock> bins;
+  std::array<EventId, kPairsAtOnce> block;
+  std::array<std::int64_t, kPairsAtOnce> bins;
   EventId next = 0;
   while (next < seen_.size()) {
     std::size_t terms = 0;
-    for (; next < seen_.size() && terms < kBlock; ++next) {
+    for (; next < seen_.size() && terms < kPairsAtOnce; ++next) {
       if (seen_.contains(next)) {
         block[terms] = next;
         bins[terms] = bins_.bin(seen_.marks()[next], mark);

@@ -10,7 +10,7 @@ namespace {
 
 // An array may have so many cells for every bin with counts: it takes little more memory than
 // slots would, and less time.
-constexpr std::int64_t kCellsPerBin = 4;
+constexpr std::int64_t kCellsPerEntry = 4;
 
 bool lowerBin(const Histogram::Entry& a, const Histogram::Entry& b) {
   return a.bin < b.bin;
@@ -168,7 +168,7 @@ void Histogram::lengthen() {
 
 // Divides the entries between the array and the hash table again.
 void Histogram::rebuild(const Entries& entries) {
-  const auto [first, last] = wellFilled(entries.begin(), entries.end(), kCellsPerBin);
+  const auto [first, last] = wellFilled(entries.begin(), entries.end(), kCellsPerEntry);
   first_bin_ = 0;
   length_ = 0;
   if (first != last) {

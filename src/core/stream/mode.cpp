@@ -8,26 +8,26 @@ namespace {
 
 // No type field makes such a type: a field has no blank in its name.
 // Not a string: that is not ready yet where another file's constants have types of modes.
-constexpr std::string_view kBegin = "[mode: ";
+constexpr std::string_view kBeginOfMode = "[mode: ";
 
 }  // namespace
 
 std::string typeOfMode(const std::string& datatype, const std::string& mode) {
-  return datatype + std::string(kBegin) + mode + "]";
+  return datatype + std::string(kBeginOfMode) + mode + "]";
 }
 
 std::string modeOf(const EventType& type) {
   if (!tellsMode(type)) {
     return "";
   }
-  const std::size_t begin = type.type.find('[') + kBegin.size();
+  const std::size_t begin = type.type.find('[') + kBeginOfMode.size();
   return type.type.substr(begin, type.type.size() - 1 - begin);
 }
 
 bool tellsMode(const EventType& type) {
   const std::size_t begin = type.type.find('[');
   return begin != std::string::npos && type.type.back() == ']' &&
-         type.type.compare(begin, kBegin.size(), kBegin) == 0;
+         type.type.compare(begin, kBeginOfMode.size(), kBeginOfMode) == 0;
 }
 
 void ModeTime::enter(std::optional<EventId> mode, std::int64_t stamp) {

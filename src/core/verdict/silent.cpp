@@ -8,7 +8,7 @@
 namespace self_awareness::core {
 namespace {
 
-constexpr std::size_t kMostNamed = 3;
+constexpr std::size_t kMostOfSilent = 3;
 
 }  // namespace
 
@@ -18,7 +18,7 @@ bool Silent::has(const std::string& component) const {
 
 std::string describe(const Silent& silent) {
   if (silent.others_go_on) {
-    return listed(silent.components, kMostNamed) +
+    return listed(silent.components, kMostOfSilent) +
            " stopped together, and others go on: a mode that training did not show, or something "
            "that they share";
   }

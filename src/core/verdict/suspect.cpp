@@ -9,7 +9,7 @@
 namespace self_awareness::core {
 namespace {
 
-constexpr std::size_t kMostNamed = 3;
+constexpr std::size_t kMostOfReason = 3;
 constexpr double kPause = 2;  // of who sends on [s]
 
 std::string number(std::size_t count, const std::string& of) {
@@ -121,8 +121,8 @@ Reason movedTo(const std::string& source, bool known, const std::vector<std::str
   reason.unit = unit::kSeconds;
   reason.value = age;
   reason.topics = topics;
-  reason.words = listed(topics, kMostNamed) + (topics.size() == 1 ? " comes" : " come") +
-                 " from " + source + " now, in training from " + listed(before, kMostNamed);
+  reason.words = listed(topics, kMostOfReason) + (topics.size() == 1 ? " comes" : " come") +
+                 " from " + source + " now, in training from " + listed(before, kMostOfReason);
   if (age > kPause) {
     char text[60];
     std::snprintf(text, sizeof text, ", the last one %.1f s ago", age);
@@ -141,7 +141,7 @@ Reason playsOn(const std::string& player, const std::vector<std::string>& topics
   reason.kind = Kind::kStranger;
   reason.topics = topics;
   reason.words = player + " plays on " + number(topics.size(), "topic") +
-                 " of this robot: " + listed(topics, kMostNamed);
+                 " of this robot: " + listed(topics, kMostOfReason);
   return reason;
 }
 

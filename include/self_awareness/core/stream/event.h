@@ -54,6 +54,7 @@ struct Event {
 };
 
 constexpr std::int64_t kNanosecondsPerSecond = 1000000000;
+constexpr double kNanosecondsPerHour = 3600e9;
 
 /// Nanoseconds to seconds, for showing and for floating point formulas.
 inline double toSeconds(std::int64_t nanoseconds) {

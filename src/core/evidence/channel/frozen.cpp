@@ -16,15 +16,15 @@ constexpr std::size_t kFewestStarts = 3;
 // Who repeats itself more often, as a share of its messages, may do so for ever.
 constexpr double kMostRepeats = 0.5;
 // Fewer repetitions, in mean gaps, may be a message that was sent twice.
-constexpr double kFewestGaps = 2.5;
+constexpr double kFewestGapsFrozen = 2.5;
 // So many repetitions in a row come by chance after so small a share of the messages.
-constexpr double kByChance = 1e-7;
+constexpr double kRepeatedByChance = 1e-7;
 
 /// Mean gaps with the same content that are more than chance.
 double gapsBeyondChance(const AttributeCounts& counts) {
   const double repeats =
       (static_cast<double>(counts.repeats) + 1) / (static_cast<double>(counts.counted()) + 2);
-  return std::max(kFewestGaps, std::log(kByChance) / std::log(repeats));
+  return std::max(kFewestGapsFrozen, std::log(kRepeatedByChance) / std::log(repeats));
 }
 
 /// For how long an event type was heard, and in how many starts.

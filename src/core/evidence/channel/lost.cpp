@@ -20,9 +20,8 @@ constexpr double kTimesUsual = 2;
 // A run without a loss is so improbable [nats], if losses go on as they were: they are over.
 constexpr double kOver = 5;
 // Losses so close together are chance where they come more often than that in an hour.
-constexpr double kByChance = 0.001;
-constexpr int kIterations = 50;   // far more than it takes
-constexpr double kHour = 3600e9;  // [ns]
+constexpr double kLostByChance = 0.001;
+constexpr int kIterations = 50;  // far more than it takes
 
 /// Share of the messages before which some are missing.
 double shareOf(const AttributeCounts& counts) {
@@ -37,17 +36,17 @@ double shareToExpect(const AttributeCounts& counts, double of_all) {
                               static_cast<double>(std::max<std::uint64_t>(counts.numbered(), 1)));
 }
 
-/// The sum that chance reaches kByChance times an hour at most. After a loss it is 1, and of the
-/// random walk that follows, exp(-theta (x - 1)) is the bound for reaching x, where
+/// The sum that chance reaches kLostByChance times an hour at most. After a loss it is 1, and of
+/// the random walk that follows, exp(-theta (x - 1)) is the bound for reaching x, where
 /// share (exp(theta) - 1) = drift theta (Lundberg's inequality).
 double sumBeyondChance(double share, double mean_gap, double drift) {
-  const double an_hour = kHour / std::max(mean_gap, 1.0) * share;
+  const double an_hour = kNanosecondsPerHour / std::max(mean_gap, 1.0) * share;
   const double ratio = drift / share;  // 4 / 3 or more
   double theta = ratio;
   for (int k = 0; k < kIterations; ++k) {
     theta = std::log1p(ratio * theta);
   }
-  return 1 + std::max(std::log(an_hour / kByChance), 0.0) / theta;
+  return 1 + std::max(std::log(an_hour / kLostByChance), 0.0) / theta;
 }
 
 struct NumbersOfMessages {

@@ -13,9 +13,9 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kNoNumber = std::numeric_limits<std::uint32_t>::max();
 // Mean gaps: a longer one, by a bin, makes its type late.
-constexpr double kLate = 1.2;
+constexpr double kLateGap = 1.2;
 // More than that is not made up for [ns].
 constexpr auto kMostBehind = static_cast<double>(kRateSpan);
 // Messages of one stamp took some time, too [s].
@@ -123,7 +123,7 @@ class PacesState : public ChannelState {
   bool listens() const override { return !paces_.empty(); }
   void add(const Heard::Arrival& arrival, const Heard& /*heard*/) override {
     const std::uint32_t number = number_of_[arrival.id];
-    if (number == kNone || arrival.last == 0) {
+    if (number == kNoNumber || arrival.last == 0) {
       return;
     }
     OfType& pace = paces_[number];
@@ -146,7 +146,7 @@ class PacesState : public ChannelState {
   // The history of one event type has no phase that could be another one: its pace counts always.
   void disarm(EventId id) override { forget(id); }
   void forget(EventId id) override {
-    if (number_of_[id] != kNone) {
+    if (number_of_[id] != kNoNumber) {
       paces_[number_of_[id]].sum = 0;
     }
   }
@@ -175,7 +175,7 @@ class PacesState : public ChannelState {
     /// Whether a gap is short since its message waited, or the one before it did.
     bool catchesUp(double gap, double step, double mean_gap) {
       const bool catches_up = step > 0 && gap < mean_gap && behind > 0;
-      const bool is_late = gap > kLate * mean_gap;
+      const bool is_late = gap > kLateGap * mean_gap;
       behind = catches_up || is_late ? std::clamp(behind + gap - mean_gap, 0.0, kMostBehind) : 0;
       return catches_up;
     }
@@ -232,7 +232,7 @@ void ExpectedPaces::describe(EventId id, std::uint32_t gaps, double time, Reason
 PacesState::PacesState(const ExpectedPaces& expected)
     : expected_(expected),
       most_of_limit_(expected.model().tuning().most_of_limit),
-      number_of_(expected.model().size(), kNone),
+      number_of_(expected.model().size(), kNoNumber),
       paces_(expected.tracks().size()) {
   for (std::uint32_t number = 0; number < paces_.size(); ++number) {
     number_of_[expected.typeOf(number)] = number;

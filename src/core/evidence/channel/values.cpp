@@ -14,17 +14,16 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr double kHour = 3600e9;  // [ns]
 // Who may have a larger share is not rare.
 constexpr double kMostUsual = 0.5;
 // Who has more values says what it likes.
 constexpr std::size_t kMostValues = 16;
 // Lines of a log come in bursts.
-const std::string kLog = "/rosout";
+const std::string kLogTopic = "/rosout";
 // A share may be as large as so many standard deviations tell.
 constexpr double kDeviations = 3;
 // The sum that chance reaches so often in an hour at most.
-constexpr double kByChance = 0.001;
+constexpr double kSumByChance = 0.001;
 
 /// All values of a sender on a topic, and how many messages had one of them.
 struct Topic {
@@ -36,7 +35,7 @@ std::vector<Topic> topicsIn(const Statistics& counts) {
   std::map<EventType, Topic> by_type;
   for (EventId id = 0; id < counts.size(); ++id) {
     const EventType& type = counts.vocabulary().at(id);
-    if (!valueOf(type).empty() && !counts.vocabulary().tellsMode(id) && type.scope != kLog) {
+    if (!valueOf(type).empty() && !counts.vocabulary().tellsMode(id) && type.scope != kLogTopic) {
       Topic& topic = by_type[withoutValue(type).value()];
       topic.ids.push_back(id);
       topic.messages += counts.type(id).events;
@@ -83,7 +82,8 @@ class ExpectedShares : public Expectation {
       std::int64_t pause = std::numeric_limits<std::int64_t>::max();
       for (const EventId id : topic.ids) {
         const bool is_known = model.learned().type(id).gaps > 0;
-        an_hour += kHour / std::max(is_known ? model.meanGap(id) : kHour, 1.0);
+        an_hour += kNanosecondsPerHour /
+                   std::max(is_known ? model.meanGap(id) : kNanosecondsPerHour, 1.0);
         pause = is_known ? std::min(pause, model.longestGap(id)) : pause;
       }
       for (std::size_t number = 0; number < this->tracks().size(); ++number) {
@@ -96,7 +96,7 @@ class ExpectedShares : public Expectation {
         const double often = (1 + usual.share) / 2;
         usual.more = std::log(often / usual.share);
         usual.less = std::log((1 - usual.share) / (1 - often));
-        usual.least_limit = std::max(std::log(an_hour / kByChance), model.tuning().least_pace);
+        usual.least_limit = std::max(std::log(an_hour / kSumByChance), model.tuning().least_pace);
         usual.pause = std::max(kRateSpan, pause);
         for (const EventId id : topic.ids) {
           numbers_of_[id].push_back(number);

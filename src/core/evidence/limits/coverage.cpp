@@ -19,7 +19,7 @@ namespace {
 
 // A silence that is found later is named if something else of its component is found so much
 // sooner.
-constexpr double kLate = 60;  // [s]
+constexpr double kFoundLate = 60;  // [s]
 constexpr double kFarLater = 10;
 
 // In a row, as the alarm's persistence takes by default.
@@ -106,7 +106,7 @@ void addLate(const Model& model, const Limits& limits, std::int64_t window,
   }
   for (const auto& [topic, found] : by_topic) {
     Coverage& of = coverages[topic.first];
-    if (found.after > kLate &&
+    if (found.after > kFoundLate &&
         found.after > kFarLater * of.death_found_after.value_or(found.after)) {
       of.blind.push_back({"silence", topic.second,
                           "until " + rounded(found.after, " s") +

@@ -15,15 +15,14 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr double kHour = 3600e9;  // [ns]
 // What one of three starts shows alone may be what the robot does at times.
 constexpr std::size_t kFewestThatAgree = 5;
 // A type whose longest gap is below this share of the longest that chance would make is a timer.
 constexpr double kFarFromChance = 1.0 / 3;
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoLimit = std::numeric_limits<double>::quiet_NaN();
 
 double hoursOf(std::uint64_t windows, std::int64_t window) {
-  return static_cast<double>(windows) * static_cast<double>(window) / kHour;
+  return static_cast<double>(windows) * static_cast<double>(window) / kNanosecondsPerHour;
 }
 
 double sumOf(const std::vector<Part>& parts) {
@@ -96,7 +95,7 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
     : model_(model),
       tuning_(model.tuning()),
       window_(window),
-      limits_(model.tracks().size(), kNone) {
+      limits_(model.tracks().size(), kNoLimit) {
   robots_.add(model.statistics());
   gatherParts(findings);
   LeftOut gaps(with_gaps_, tuning_);
@@ -134,12 +133,12 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   const std::vector<std::size_t> samples = samplesOf(spans, toNanoseconds(tuning_.start_time));
   for (std::size_t k = 0; k < training.size(); ++k) {
     const auto length = static_cast<double>(training[k].end - training[k].start);
-    with_gaps_.push_back({samples[k], length / kHour});
+    with_gaps_.push_back({samples[k], length / kNanosecondsPerHour});
     longest_recording_ = std::max(longest_recording_, length);
   }
   for (std::size_t k = 0; k < findings.size(); ++k) {
     const double hours = hoursOf(findings[k].windows, window_);
-    longest_recording_ = std::max(longest_recording_, hours * kHour);
+    longest_recording_ = std::max(longest_recording_, hours * kNanosecondsPerHour);
     for (const LimitFinder::Recording::Part& part : findings[k].parts) {
       const Part its{samples[training.size() + k], hoursOf(part.windows, window_)};
       judged_.push_back(its);
@@ -291,7 +290,7 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
 
 double LimitSearch::withALoss(std::size_t track, double largest, double rate) const {
   const double mean_gap = model_.meanGap(model_.tracks()[track].to);
-  const bool is_rare = lost_ * kHour / mean_gap <= rate;
+  const bool is_rare = lost_ * kNanosecondsPerHour / mean_gap <= rate;
   const bool has_one = largest - window() >= tuning_.regular * mean_gap;
   return is_rare || has_one ? largest : largest + mean_gap;
 }
@@ -320,7 +319,7 @@ double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, doub
   if (again > std::max(told, tuning_.most_mean_gaps * mean_gap)) {
     // What comes when something happens may stay away for as long as nothing does. Recordings
     // that are hardly longer than a pause do not say how long that is.
-    const double all = sumOf(with_gaps_) * kHour;
+    const double all = sumOf(with_gaps_) * kNanosecondsPerHour;
     age = std::max({age, rare, std::min(all, tuning_.pauses_in_recording * longest_recording_)});
   }
   return age;

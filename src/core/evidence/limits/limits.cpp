@@ -18,7 +18,7 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kNotSettled = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
@@ -53,7 +53,7 @@ void LimitFinder::startRecording(std::shared_ptr<const Model> model, std::int64_
 void LimitFinder::startScoring() {
   scorer_ = std::make_unique<Scorer>(judging_, parameters_.window);
   scorer_->leaveOut(Finding::kSilent);  // the longest gaps say it
-  settled_at_.assign(model_->size(), kNever);
+  settled_at_.assign(model_->size(), kNotSettled);
   settling_.clear();
   heard_now_.assign(model_->size(), false);
   waiting_.assign(model_->tracks().size(), 0);
@@ -94,7 +94,7 @@ std::optional<ObservedEvent> LimitFinder::observe(const Event& event) {
   if (!model_->vocabulary().isMessage(event.id)) {
     return std::nullopt;
   }
-  if (event.id < settled_at_.size() && settled_at_[event.id] == kNever) {
+  if (event.id < settled_at_.size() && settled_at_[event.id] == kNotSettled) {
     settled_at_[event.id] = event.stamp + parameters_.settle_time;
     settling_.push_back(event.id);
     endHeadOrTail(event.id, event.stamp - *first_stamp_);

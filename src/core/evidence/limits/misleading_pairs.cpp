@@ -10,7 +10,7 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t kNotSeen = std::numeric_limits<std::int64_t>::min();
 
 }  // namespace
 
@@ -45,7 +45,7 @@ void MisleadingPairs::add(const Event& event) {
     started_ = true;
   }
   for (Pair& pair : pairs_[event.id]) {
-    if (last_seen_[pair.from] != kNever) {
+    if (last_seen_[pair.from] != kNotSeen) {
       ++pair.delays[log_bins::bin(event.stamp - last_seen_[pair.from])];
     }
   }
@@ -66,7 +66,7 @@ std::vector<Said> MisleadingPairs::takeFindings() {
 }
 
 void MisleadingPairs::startPart() {
-  last_seen_.assign(pairs_.size(), kNever);
+  last_seen_.assign(pairs_.size(), kNotSeen);
   duration_ = 0;
   started_ = false;
   for (std::vector<Pair>& pairs : pairs_) {

@@ -11,12 +11,12 @@ namespace self_awareness::core::evidence {
 namespace {
 
 // Of a list that will come again.
-constexpr std::size_t kFewestRecordings = 2;
+constexpr std::size_t kFewestLists = 2;
 constexpr std::size_t kMostNamed = 3;
 
 // Levels of diagnostic_msgs/DiagnosticStatus below ERROR are the node's own business.
 const std::string kLevel = "status.level";
-const std::set<std::string> kBelowError{"0", "1"};
+const std::set<std::string> kLevelsBelowError{"0", "1"};
 
 std::size_t recordingsWith(EventId id, const Statistics& counts) {
   const auto& all = counts.recordings();
@@ -103,10 +103,10 @@ std::optional<Reason> News::reasonOf(EventId id) const {
   const auto known = lists_.find({*any, list.field});
   const bool invents =
       list.values.empty() || known == lists_.end() ||
-      known->second.fewest_recordings < kFewestRecordings ||
+      known->second.fewest_recordings < kFewestLists ||
       std::count(known->second.all.begin(), known->second.all.end(), std::set<std::string>()) > 0;
   const bool is_usual =
-      list.field == kLevel && std::includes(kBelowError.begin(), kBelowError.end(),
+      list.field == kLevel && std::includes(kLevelsBelowError.begin(), kLevelsBelowError.end(),
                                             list.values.begin(), list.values.end());
   if (invents || is_usual) {
     return std::nullopt;

@@ -8,7 +8,7 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::min();
+constexpr std::int64_t kSinceEver = std::numeric_limits<std::int64_t>::min();
 
 void append(const std::vector<Suspect>& suspects, std::vector<Suspect>& all) {
   all.insert(all.end(), suspects.begin(), suspects.end());
@@ -100,9 +100,9 @@ std::vector<Suspect> WhoSends::alone(const Window& window, const Scorer& scorer,
   std::vector<Suspect> named = two_senders_.suspects(scorer.heard());
   append(players_.suspects(), named);
   append(moved_.suspects(all), named);
-  append(strangers(window, scorer, kEver), named);
+  append(strangers(window, scorer, kSinceEver), named);
   if (all) {
-    strangers_.addUnknown(window, kEver, named);
+    strangers_.addUnknown(window, kSinceEver, named);
     dropMovers(named);
   }
   return named;
