@@ -17,8 +17,6 @@
 namespace self_awareness {
 namespace {
 
-constexpr double kPause = 5;  // between two attempts to write the file [s]
-
 std::string listed(const std::vector<core::Acceptance>& all) {
   std::vector<std::string> words;
   words.reserve(all.size());
@@ -31,7 +29,7 @@ std::string listed(const std::vector<core::Acceptance>& all) {
 }  // namespace
 
 AcceptCalls::AcceptCalls(OperatorCalls& calls, Handlers handlers)
-    : calls_(calls), handlers_(std::move(handlers)), writer_(kPause) {}
+    : calls_(calls), handlers_(std::move(handlers)) {}
 
 ros::ServiceServer AcceptCalls::advertise(ros::NodeHandle& private_node_handle) {
   return private_node_handle.advertiseService("accept", &AcceptCalls::onAccept, this);

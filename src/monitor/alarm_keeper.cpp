@@ -11,17 +11,12 @@
 #include "session.h"
 
 namespace self_awareness {
-namespace {
-
-constexpr double kPause = 5;  // between two attempts to write the file [s]
-
-}  // namespace
+namespace {}  // namespace
 
 AlarmKeeper::AlarmKeeper(RecorderFolder folder, std::string run_id)
     : folder_(std::move(folder)),
       path_(folder_.pathOfStandingAlarm()),
-      run_id_(std::move(run_id)),
-      writer_(kPause) {}
+      run_id_(std::move(run_id)) {}
 
 void AlarmKeeper::setModel(std::uint64_t content) {
   model_ = content;

@@ -3,7 +3,6 @@
 #include <ros/time.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "diagnostics.h"
@@ -13,13 +12,8 @@
 namespace self_awareness {
 namespace {
 
-constexpr double kPause = 5;  // between two attempts to write a file [s]
 constexpr std::size_t kMegabyte = 1000000;
 constexpr std::int64_t kNameStep = 1000000;  // names tell milliseconds [ns]
-
-std::int64_t nanoseconds(double seconds) {
-  return std::llround(seconds * 1e9);
-}
 
 }  // namespace
 
@@ -30,13 +24,12 @@ RecorderFolder folderOf(const RecorderParameters& parameters) {
 
 FlightRecorder::FlightRecorder(const RecorderParameters& parameters,
                                std::function<ros1::LogSource()> source)
-    : duration_(nanoseconds(parameters.duration)),
-      after_(nanoseconds(parameters.after)),
+    : duration_(core::toNanoseconds(parameters.duration)),
+      after_(core::toNanoseconds(parameters.after)),
       most_bytes_(static_cast<std::size_t>(parameters.memory) * kMegabyte),
       source_(std::move(source)),
       folder_(folderOf(parameters)),
-      packer_([this](self_awareness::EventLog part) { keep(std::move(part)); }),
-      writer_(kPause) {}
+      packer_([this](self_awareness::EventLog part) { keep(std::move(part)); }) {}
 
 std::vector<ros::ServiceServer> FlightRecorder::advertise(ros::NodeHandle& private_node_handle) {
   return {private_node_handle.advertiseService("dump", &FlightRecorder::onDump, this)};

@@ -15,8 +15,6 @@
 namespace self_awareness {
 namespace {
 
-constexpr double kPause = 5;  // between two attempts to write the file [s]
-
 /// Nobody watches an incident any more. @return it was open
 bool leaveAlone(self_awareness::Incident& incident) {
   const bool was_open = incident.over == 0U;
@@ -33,8 +31,7 @@ IncidentKeeper::IncidentKeeper(RecorderFolder folder,
     : folder_(std::move(folder)),
       path_(folder_.pathOfIncidents()),
       publish_(std::move(publish)),
-      folded_(kRepeatsWithin, ros1::kMostIncidents),
-      writer_(kPause) {}
+      folded_(kRepeatsWithin, ros1::kMostIncidents) {}
 
 void IncidentKeeper::restore(std::optional<std::uint64_t> standing) {
   try {

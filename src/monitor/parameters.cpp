@@ -2,8 +2,6 @@
 
 #include <ros/param.h>
 
-#include <cmath>
-
 #include "node/parameter_reader.h"
 
 namespace self_awareness {
@@ -12,10 +10,6 @@ namespace {
 // Longer than any of these times is of use; and they are added up in nanoseconds.
 constexpr double kHour = 3600;  // [s]
 constexpr double kDay = 86400;  // [s]
-
-std::int64_t nanoseconds(double seconds) {
-  return std::llround(seconds * 1e9);
-}
 
 }  // namespace
 
@@ -40,7 +34,7 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
                                                               {"model", SubscribePolicy::kModel}});
   core::Detector::Parameters& detector = parameters.detector;
   core::Persistence::Parameters& persistence = detector.persistence;
-  detector.settle_time = nanoseconds(
+  detector.settle_time = core::toNanoseconds(
       reader.seconds("settle_time", inSeconds(defaults.detector.settle_time), {0, kHour}));
   detector.silence_is_abnormal =
       reader.choice<bool>("silence", "abnormal", {{"abnormal", true}, {"ignored", false}});
@@ -52,8 +46,8 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   const double alarm_of = persistence.alarm_of;
   persistence.alarm_windows =
       reader.wholeNumber("alarm_windows", persistence.alarm_windows, {1, alarm_of});
-  persistence.hold_time =
-      nanoseconds(reader.seconds("hold_time", inSeconds(persistence.hold_time), {0, kHour}));
+  persistence.hold_time = core::toNanoseconds(
+      reader.seconds("hold_time", inSeconds(persistence.hold_time), {0, kHour}));
   detector.validate();
   parameters.optional = reader.names("optional");
   parameters.live.poll_interval =

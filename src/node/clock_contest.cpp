@@ -17,7 +17,7 @@ constexpr std::int64_t kBack = kNanosecondsPerSecond / 10;
 constexpr std::int64_t kForth = 5 * kNanosecondsPerSecond;
 constexpr double kFastest = 100;
 constexpr std::size_t kMostRecent = 10;
-constexpr std::size_t kMostNamed = 5;
+constexpr std::size_t kMostPublishers = 5;
 
 }  // namespace
 
@@ -70,7 +70,7 @@ std::string ClockContest::rivals() const {
   if (publishers_.size() > 1) {
     std::size_t named = 0;
     for (const std::string& publisher : publishers_) {
-      if (named == kMostNamed) {
+      if (named == kMostPublishers) {
         return names + " and " + std::to_string(publishers_.size() - named) + " more";
       }
       names += (named++ > 0 ? ", " : "") + ros1::printable(publisher, ros1::kLongestName);

@@ -20,6 +20,7 @@ class FileWriter {
  public:
   /// Files that may wait, besides the one that is being written; then the oldest is given up.
   static constexpr std::size_t kMostWaiting = 2;
+  static constexpr double kPause = 5;  ///< between two attempts to write a file [s]
 
   struct File {
     std::string path;
@@ -36,8 +37,7 @@ class FileWriter {
     std::size_t waiting_bytes = 0;  ///< memory of files that are not yet written
   };
 
-  /// @param pause between two attempts to write the same file [s]
-  explicit FileWriter(double pause);
+  explicit FileWriter(double pause = kPause);
   ~FileWriter() { finish(); }
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;

@@ -136,7 +136,7 @@ void ParameterReader::fail(const std::string& name, const XmlRpcValue& value,
   } else if (value.getType() == XmlRpcValue::TypeDouble) {
     text << static_cast<double>(XmlRpcValue(value));
   } else {
-    text << value;
+    ::operator<<(text, value);  // those of messages would hide it
   }
   throw std::invalid_argument(node_handle_.resolveName(name) + " is " + text.str() +
                               ", it must be " + must_be);

@@ -19,7 +19,7 @@ namespace self_awareness {
 namespace {
 
 constexpr std::chrono::seconds kGoodbye(2);
-constexpr std::chrono::hours kAnyTime(1);        // to wait for what notifies
+constexpr std::chrono::hours kUntilTold(1);      // to wait for what notifies
 constexpr timespec kBetweenLooks{0, 100000000};  // at whether the node has ended without a signal
 
 /// How far a node is; what is true stays true.
@@ -85,7 +85,7 @@ class Leaving {
     const auto may_go = [](const Life& life) {
       return life.stopping && (life.finished || !life.made);
     };
-    while (!await(may_go, kAnyTime)) {
+    while (!await(may_go, kUntilTold)) {
     }
     if (!await([](const Life& life) { return life.gone; }, kGoodbye)) {
       std::fputs("the master does not answer: this node ends without unregistering\n", stderr);

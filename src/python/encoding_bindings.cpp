@@ -82,7 +82,7 @@ std::map<std::string, std::string> namesBy(const Names& names, Rename rename) {
 }
 
 /// What is pickled: the message that files hold.
-py::bytes stateOf(const ros1::EncodingRules& rules) {
+py::bytes stateOfRules(const ros1::EncodingRules& rules) {
   const self_awareness::Encoding message = ros1::toMessage(rules);
   std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
   ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
@@ -90,7 +90,7 @@ py::bytes stateOf(const ros1::EncodingRules& rules) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-ros1::EncodingRules fromState(const py::bytes& state) {
+ros1::EncodingRules rulesFrom(const py::bytes& state) {
   const auto bytes = static_cast<std::string>(state);
   return ros1::fromMessage(ros1::readMessage<self_awareness::Encoding>(
       reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
@@ -193,7 +193,7 @@ void bindEncoding(py::module& m) {
             return ros1::Encoder(self, nullptr).includesSource(source);
           },
           py::arg("source"), "Whether messages of a node can be events, by its stable name.")
-      .def(py::pickle(&stateOf, &fromState))
+      .def(py::pickle(&stateOfRules, &rulesFrom))
       .def("__eq__",
            [](const ros1::EncodingRules& a, const ros1::EncodingRules& b) { return a == b; });
 }

@@ -18,8 +18,8 @@ namespace {
 
 using NodesOfTopics = std::map<std::string, std::set<std::string>>;
 
-ros1::Graph graphOf(const NodesOfTopics& publishers, const NodesOfTopics& subscribers,
-                    const HostsState& hosts) {
+ros1::Graph graphOfNodes(const NodesOfTopics& publishers, const NodesOfTopics& subscribers,
+                         const HostsState& hosts) {
   ros1::Graph graph;
   graph.hosts = hosts;
   for (const auto& [topic, nodes] : publishers) {
@@ -38,7 +38,7 @@ void bindEventLogs(py::module& m) {
       "unheard_publications",
       [](const ros1::EncodingRules& encoding, const NodesOfTopics& publishers,
          const NodesOfTopics& subscribers) {
-        return ros1::unheardIn(graphOf(publishers, subscribers, {}),
+        return ros1::unheardIn(graphOfNodes(publishers, subscribers, {}),
                                ros1::Encoder(encoding, nullptr));
       },
       py::arg("encoding"), py::arg("publishers"), py::arg("subscribers"),
@@ -49,7 +49,7 @@ void bindEventLogs(py::module& m) {
       [](const ros1::EncodingRules& encoding, const NodesOfTopics& publishers,
          const NodesOfTopics& subscribers, const std::map<std::string, std::string>& types,
          bool used_only) {
-        ros1::Graph graph = graphOf(publishers, subscribers, {});
+        ros1::Graph graph = graphOfNodes(publishers, subscribers, {});
         for (auto& [name, topic] : graph.topics) {
           const auto type = types.find(name);
           topic.datatype = type == types.end() ? "" : type->second;
@@ -77,7 +77,7 @@ void bindEventLogs(py::module& m) {
              const NodesOfTopics& publishers, const NodesOfTopics& subscribers,
              const HostsState& hosts, const py::object& progress) {
             const ros1::BagReader bag(pathsOf(path));
-            ros1::addToEventLog(bag, encoding, graphOf(publishers, subscribers, hosts), self,
+            ros1::addToEventLog(bag, encoding, graphOfNodes(publishers, subscribers, hosts), self,
                                 progressTo(progress));
             return bag.summary();
           },

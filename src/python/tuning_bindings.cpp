@@ -18,7 +18,7 @@ using core::evidence::Tuning;
 using core::evidence::TuningNumber;
 using TuningState = std::pair<std::vector<double>, std::set<std::string>>;
 
-TuningState stateOf(const Tuning& tuning) {
+TuningState stateOfTuning(const Tuning& tuning) {
   TuningState state;
   for (const TuningNumber& number : core::evidence::tuningNumbers()) {
     state.first.push_back(tuning.*number.value);
@@ -27,7 +27,7 @@ TuningState stateOf(const Tuning& tuning) {
   return state;
 }
 
-Tuning fromState(const TuningState& state) {
+Tuning tuningFrom(const TuningState& state) {
   Tuning tuning;
   const std::vector<TuningNumber>& numbers = core::evidence::tuningNumbers();
   for (std::size_t k = 0; k < numbers.size(); ++k) {
@@ -87,7 +87,7 @@ void bindTuning(py::module& m) {
       .def("least_effect_on_delay", &Tuning::leastEffectOnDelay, py::arg("period"),
            "on the delay after an event type with this mean gap [ns], in ns")
       .def(py::self == py::self)
-      .def(py::pickle(&stateOf, &fromState));
+      .def(py::pickle(&stateOfTuning, &tuningFrom));
 }
 
 }  // namespace self_awareness::python

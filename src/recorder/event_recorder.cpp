@@ -26,7 +26,7 @@ namespace {
 namespace fs = boost::filesystem;
 
 constexpr double kTick = 0.1;  // [s]
-constexpr double kMegabyte = 1e6;
+constexpr double kBytesOfMegabyte = 1e6;
 constexpr double kLatestTime = 4294967295;  // that ROS can say [s since 1970]
 constexpr char kActive[] = ".active";
 
@@ -232,7 +232,7 @@ bool EventRecorder::hasSpace() const {
   boost::system::error_code error;
   const fs::space_info space = fs::space(folder, error);
   // Without an answer, the attempt to write tells.
-  return error || static_cast<double>(space.available) >= parameters_.min_space * kMegabyte;
+  return error || static_cast<double>(space.available) >= parameters_.min_space * kBytesOfMegabyte;
 }
 
 bool EventRecorder::onFinish(std_srvs::Trigger::Request& /*request*/,
@@ -265,7 +265,7 @@ void EventRecorder::onReport() {
   status.add("files before", files_);
   status.add("events", events_);
   status.add("size [MB]",
-             static_cast<double>(bytes_ + (file_ ? file_->log.size() : 0)) / kMegabyte);
+             static_cast<double>(bytes_ + (file_ ? file_->log.size() : 0)) / kBytesOfMegabyte);
   status.add("dropped messages", live_->events().dropped());
   status.add("event types", vocabulary_.size());
   ros1::DiagnosticStatuses statuses(ros::this_node::getName(), ros1::kNoHardware, rosNow());

@@ -25,7 +25,7 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestQuote = 100;  // [bytes]
+constexpr std::size_t kLongestInConnection = 100;  // [bytes]
 
 /// Whether a node is `rostopic pub`, in any namespace.
 bool isRostopic(const std::string& source) {
@@ -97,23 +97,25 @@ core::EventId internUpTo(std::size_t most, const core::EventType& type,
 }
 
 std::string whyLeftOut(const std::string& topic) {
-  return isLegalTopic(topic) ? ""
-                             : "no node can subscribe to the topic '" +
-                                   printable(topic, kLongestQuote) + "': its name is illegal";
+  return isLegalTopic(topic)
+             ? ""
+             : "no node can subscribe to the topic '" + printable(topic, kLongestInConnection) +
+                   "': its name is illegal";
 }
 
 std::string whyLeftOut(const Connection& connection) {
   for (const std::string* name : {&connection.callerid, &connection.datatype}) {
     if (name->size() > kLongestName && isLegalTopic(connection.topic)) {
-      return "the name '" + printable(*name, kLongestQuote) + "...' on the topic " +
-             printable(connection.topic, kLongestQuote) + " is too long";
+      return "the name '" + printable(*name, kLongestInConnection) + "...' on the topic " +
+             printable(connection.topic, kLongestInConnection) + " is too long";
     }
   }
   const core::EventType made_up{"", "", connection.datatype};
   if (core::tellsMode(made_up) || core::isLatched(made_up) ||
       core::tellsList(made_up)) {  // nobody else makes them up
-    return "the name '" + printable(connection.datatype, kLongestQuote) + "' on the topic " +
-           printable(connection.topic, kLongestQuote) + " is no name of a type";
+    return "the name '" + printable(connection.datatype, kLongestInConnection) +
+           "' on the topic " + printable(connection.topic, kLongestInConnection) +
+           " is no name of a type";
   }
   return whyLeftOut(connection.topic);
 }

@@ -14,13 +14,13 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestQuote = 100;  // of a stranger's text in an error [bytes]
+constexpr std::size_t kLongestInRule = 100;  // of a stranger's text in an error [bytes]
 
 /// @throw std::invalid_argument if the classes of a datatype cannot be
 void checkClasses(const EncodingRules& rules, const std::string& datatype,
                   const ValueClasses& classes) {
   const std::string begin =
-      "encoding: the classes of " + printable(datatype, kLongestQuote) + " must be ";
+      "encoding: the classes of " + printable(datatype, kLongestInRule) + " must be ";
   if (rules.type_fields.count(datatype) == 0) {
     throw std::invalid_argument(begin + "those of one of its fields (type_fields)");
   }
@@ -55,7 +55,7 @@ std::string inShort(double value) {
 void checkMode(const EncodingRules& rules) {
   const ModeField& mode = *rules.mode;
   const std::string begin =
-      "encoding: the mode is told on '" + printable(mode.topic, kLongestQuote) + "'";
+      "encoding: the mode is told on '" + printable(mode.topic, kLongestInRule) + "'";
   if (!isPrintable(mode.topic) || !whyLeftOut(mode.topic).empty() || mode.topic[0] != '/') {
     throw std::invalid_argument(begin +
                                 ", which is not the name of a topic; it begins with a slash");
@@ -103,7 +103,7 @@ void EncodingRules::validate() const {
   for (const auto& [datatype, field] : type_fields) {
     if (!isPrintable(datatype) || !isPrintable(field)) {
       throw std::invalid_argument("encoding: the type field '" +
-                                  printable(datatype + ": " + field, kLongestQuote) +
+                                  printable(datatype + ": " + field, kLongestInRule) +
                                   "' is no UTF-8, or has control characters");
     }
   }

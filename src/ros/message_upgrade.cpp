@@ -13,14 +13,14 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestQuote = 64;  // of a stranger's text in an error [bytes]
+constexpr std::size_t kLongestInUpgrade = 64;  // of a stranger's text in an error [bytes]
 
-[[noreturn]] void fail(const std::string& what) {
+[[noreturn]] void failUpgrade(const std::string& what) {
   throw std::invalid_argument(what);
 }
 
-std::string quote(const std::string& text) {
-  return printable(text, kLongestQuote);
+std::string quoted(const std::string& text) {
+  return printable(text, kLongestInUpgrade);
 }
 
 }  // namespace
@@ -85,8 +85,9 @@ class MessageUpgrade::Builder {
   Layout::Field fieldFrom(const std::string& type, const MessageDefinition::Line& old,
                           const MessageDefinition::Line& line) const {
     if (old.type != line.type || old.array != line.array) {
-      fail("field " + line.name + " of " + type + " is of the type " +
-           quote(old.type + old.array) + " in the file, and here " + line.type + line.array);
+      failUpgrade("field " + line.name + " of " + type + " is of the type " +
+                  quoted(old.type + old.array) + " in the file, and here " + line.type +
+                  line.array);
     }
     Layout::Field field;
     if (!sameLayout(line.type)) {
@@ -170,7 +171,7 @@ class MessageUpgrade::Writer {
         append(&elements, sizeof elements);
       }
       if (elements > 0 && !field.elements->takes_bytes) {
-        fail("an array in it has elements without any field");
+        failUpgrade("an array in it has elements without any field");
       }
     }
     for (std::uint32_t k = 0; k < elements; ++k) {
@@ -180,7 +181,7 @@ class MessageUpgrade::Writer {
 
   void append(const void* data, std::size_t size) {
     if (bytes_.size() + size > MessageDefinition::kLargestMessage) {
-      fail("it is larger than a message can be");
+      failUpgrade("it is larger than a message can be");
     }
     const auto* begin = static_cast<const std::uint8_t*>(data);
     bytes_.insert(bytes_.end(), begin, begin + size);
@@ -198,10 +199,10 @@ std::vector<std::uint8_t> MessageUpgrade::apply(const std::uint8_t* data, std::s
   try {
     writer.append(*layout_, cursor);
   } catch (const std::out_of_range&) {
-    fail("a length in it is wrong");
+    failUpgrade("a length in it is wrong");
   }
   if (!cursor.atEnd()) {
-    fail("there is more in it than belongs to it");
+    failUpgrade("there is more in it than belongs to it");
   }
   return writer.take();
 }

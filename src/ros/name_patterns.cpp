@@ -8,7 +8,7 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestQuote = 200;  // of a pattern in an error [bytes]
+constexpr std::size_t kLongestQuotedPattern = 200;  // of a pattern in an error [bytes]
 
 }  // namespace
 
@@ -19,14 +19,14 @@ NamePatterns::NamePatterns(const std::vector<std::string>& patterns) {
   int states = 0;
   for (const std::string& pattern : patterns) {
     if (!isPrintable(pattern)) {
-      throw std::invalid_argument("encoding: '" + printable(pattern, kLongestQuote) +
+      throw std::invalid_argument("encoding: '" + printable(pattern, kLongestQuotedPattern) +
                                   "' is no UTF-8, or has control characters; no name has any");
     }
     auto compiled = std::make_unique<const re2::RE2>(pattern, options);
     if (!compiled->ok()) {
-      throw std::invalid_argument("encoding: '" + printable(pattern, kLongestQuote) +
+      throw std::invalid_argument("encoding: '" + printable(pattern, kLongestQuotedPattern) +
                                   "' is not a regular expression (of RE2): " +
-                                  printable(compiled->error(), kLongestQuote));
+                                  printable(compiled->error(), kLongestQuotedPattern));
     }
     states += compiled->ProgramSize();
     if (states > kMostStates) {

@@ -11,8 +11,8 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestQuote = 200;  // of a rule in an error [bytes]
-constexpr int kMostGroups = 10;             // the whole name, and \1 to \9
+constexpr std::size_t kLongestQuotedRule = 200;  // of a rule in an error [bytes]
+constexpr int kMostGroups = 10;                  // the whole name, and \1 to \9
 
 std::vector<std::string> patternsOf(const std::vector<Rename>& renames) {
   std::vector<std::string> patterns;
@@ -33,14 +33,15 @@ NameRenames::NameRenames(const std::vector<Rename>& renames) : patterns_(pattern
     } else if (name.size() > kLongestName || !isPrintable(name)) {
       problem = "is too long, is no UTF-8, or has control characters";
     } else if (!patterns_.all()[k]->CheckRewriteString(name, &problem)) {
-      problem = "does not fit its pattern (" + printable(problem, kLongestQuote) + ")";
+      problem = "does not fit its pattern (" + printable(problem, kLongestQuotedRule) + ")";
     } else {
       names_.push_back(name);
       continue;
     }
-    throw std::invalid_argument("encoding: the name '" + printable(name, kLongestQuote) +
+    throw std::invalid_argument("encoding: the name '" + printable(name, kLongestQuotedRule) +
                                 "' that takes the place of '" +
-                                printable(renames[k].pattern, kLongestQuote) + "' " + problem);
+                                printable(renames[k].pattern, kLongestQuotedRule) + "' " +
+                                problem);
   }
 }
 

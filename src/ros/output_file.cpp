@@ -17,8 +17,8 @@ namespace {
 namespace fs = boost::filesystem;
 
 constexpr char kPrefix[] = ".self_awareness_part";
-constexpr std::size_t kLongestName = 200;  // with the prefix, file systems take 255 [bytes]
-constexpr int kMostLinks = 40;             // as the kernel follows
+constexpr std::size_t kLongestEndOfName = 200;  // with the prefix, file systems take 255 [bytes]
+constexpr int kMostLinks = 40;                  // as the kernel follows
 constexpr double kMegabyte = 1e6;
 
 [[noreturn]] void fail(const std::string& path, int error, const std::string& temporary = "") {
@@ -170,7 +170,7 @@ OutputFile::~OutputFile() {
 void OutputFile::openTemporary() {
   const fs::path target = target_;
   const std::string name = target.filename().string();
-  const std::string end = name.substr(name.size() - std::min(name.size(), kLongestName));
+  const std::string end = name.substr(name.size() - std::min(name.size(), kLongestEndOfName));
   for (int number = 0; lock_ < 0; ++number) {
     temporary_ = (folderOf(target) / (kPrefix + std::to_string(::getpid()) + "_" +
                                       std::to_string(number) + "." + end))

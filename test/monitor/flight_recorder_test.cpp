@@ -16,15 +16,14 @@
 #include "../await.h"
 #include "../in_folder.h"
 #include "../problem.h"
+#include "../times.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 #include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness {
 namespace {
 
-constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
-constexpr std::int64_t kStart = 1600000000 * kSecond;  // ROS time [ns]
-constexpr std::int64_t kSteady = 5000 * kSecond;       // steady time at the start [ns]
+constexpr std::int64_t kSteady = 5000 * kSecond;  // steady time at the start [ns]
 
 class FlightRecorderTest : public InFolder {
  protected:

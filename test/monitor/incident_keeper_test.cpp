@@ -6,13 +6,13 @@
 #include <string>
 
 #include "../in_folder.h"
+#include "../times.h"
 #include "ros/verdict/incidents_file.h"
 #include "self_awareness/SelfAwareness.h"
 
 namespace self_awareness {
 namespace {
 
-constexpr std::int64_t kSecond = 1000000000;
 constexpr std::int64_t kEnd = 1000 * kSecond;
 
 class IncidentKeeperTest : public InFolder {

@@ -9,14 +9,13 @@
 
 #include "../await.h"
 #include "../in_folder.h"
+#include "../times.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 
 namespace self_awareness {
 namespace {
 
-constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
-constexpr std::int64_t kStart = 1600000000 * kSecond;
 constexpr std::int64_t kRobotStart = kStart - 60 * kSecond;
 constexpr std::int64_t kStretch = KeptLogs::kLongest / kSecond;  // [s]
 

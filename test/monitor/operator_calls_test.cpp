@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "../times.h"
+
 namespace self_awareness {
 namespace {
-
-constexpr std::int64_t kSecond = 1000000000;
 
 TEST(OperatorCalls, ALoopIsAnsweredSometimes) {
   OperatorCalls calls;

@@ -12,6 +12,7 @@
 
 #include "../in_folder.h"
 #include "../ros/serialized.h"
+#include "../times.h"
 #include "monitor/session.h"
 #include "self_awareness/core/paper/judge.h"
 
@@ -20,8 +21,7 @@ namespace {
 
 using self_awareness::SelfAwareness;
 
-constexpr std::int64_t kMillisecond = 1000000;                              // [ns]
-constexpr std::int64_t kStart = 1600000000L * core::kNanosecondsPerSecond;  // [ns]
+constexpr std::int64_t kMillisecond = 1000000;  // [ns]
 const std::vector<core::EventType> kTypes = {{"/player", "/scan", "std_msgs/String"},
                                              {"/slam", "/pose", "std_msgs/String"}};
 

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "../times.h"
 #include "self_awareness/ros/encoding.h"
 
 namespace self_awareness {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000;
-using Names = std::vector<std::string>;
+using Nodes = std::vector<std::string>;
 using Addresses = std::map<std::string, std::string>;
 
 ros1::Encoder encoder(const std::vector<ros1::Rename>& renames = {}) {
@@ -21,25 +21,25 @@ ros1::Encoder encoder(const std::vector<ros1::Rename>& renames = {}) {
   return ros1::Encoder(rules, [](const core::EventType&) { return core::EventId{0}; });
 }
 
-Names see(Restarts& restarts, const Addresses& addresses, std::int64_t now,
+Nodes see(Restarts& restarts, const Addresses& addresses, std::int64_t now,
           const std::string& when) {
   return restarts.see(addresses, encoder(), now, when);
 }
 
 TEST(Restarts, AnotherAddressIsARestartAndTheLineComesWhenAllIsAsUsual) {
   Restarts restarts(5 * kSecond);
-  EXPECT_EQ(see(restarts, {{"/player", "http://a:1"}}, 0, "0"), Names()) << "it is new";
-  EXPECT_EQ(see(restarts, {{"/player", "http://a:1"}}, kSecond, "1"), Names());
-  EXPECT_EQ(see(restarts, {}, 2 * kSecond, "2"), Names()) << "it has gone";
-  EXPECT_EQ(see(restarts, {{"/player", "http://a:2"}}, 3 * kSecond, "3"), Names{"/player"});
-  EXPECT_EQ(restarts.advance(60 * kSecond, {}), Names()) << "it is not heard";
+  EXPECT_EQ(see(restarts, {{"/player", "http://a:1"}}, 0, "0"), Nodes()) << "it is new";
+  EXPECT_EQ(see(restarts, {{"/player", "http://a:1"}}, kSecond, "1"), Nodes());
+  EXPECT_EQ(see(restarts, {}, 2 * kSecond, "2"), Nodes()) << "it has gone";
+  EXPECT_EQ(see(restarts, {{"/player", "http://a:2"}}, 3 * kSecond, "3"), Nodes{"/player"});
+  EXPECT_EQ(restarts.advance(60 * kSecond, {}), Nodes()) << "it is not heard";
   restarts.onHeard("/player", 61 * kSecond);
   restarts.onHeard("/player", 64 * kSecond);
-  EXPECT_EQ(restarts.advance(65 * kSecond, {}), Names());
-  EXPECT_EQ(restarts.advance(66 * kSecond, {"/player"}), Names()) << "it is not as usual";
+  EXPECT_EQ(restarts.advance(65 * kSecond, {}), Nodes());
+  EXPECT_EQ(restarts.advance(66 * kSecond, {"/player"}), Nodes()) << "it is not as usual";
   EXPECT_EQ(restarts.advance(67 * kSecond, {"/slam"}),
-            Names{"/player restarted at 3, back as usual"});
-  EXPECT_EQ(restarts.advance(68 * kSecond, {}), Names()) << "it was said";
+            Nodes{"/player restarted at 3, back as usual"});
+  EXPECT_EQ(restarts.advance(68 * kSecond, {}), Nodes()) << "it was said";
 }
 
 TEST(Restarts, AreCountedForTenMinutes) {
@@ -58,15 +58,15 @@ TEST(Restarts, AreKnownByTheNamesOfTheModel) {
   Restarts restarts(5 * kSecond);
   const ros1::Encoder fleet = encoder({{"/r[0-9]+/(.*)", "/\\1"}});
   for (const char* const address : {"http://a:1", "http://a:2"}) {
-    EXPECT_EQ(restarts.see({{"/r7/play_1_1600000000000", address}}, fleet, 0, "0"), Names())
+    EXPECT_EQ(restarts.see({{"/r7/play_1_1600000000000", address}}, fleet, 0, "0"), Nodes())
         << "a player is left out";
   }
-  EXPECT_EQ(restarts.see({{"/r7/player", "http://a:1"}}, fleet, 0, "0"), Names());
-  EXPECT_EQ(restarts.see({{"/r7/player", "http://a:2"}}, fleet, kSecond, "1"), Names{"/player"});
+  EXPECT_EQ(restarts.see({{"/r7/player", "http://a:1"}}, fleet, 0, "0"), Nodes());
+  EXPECT_EQ(restarts.see({{"/r7/player", "http://a:2"}}, fleet, kSecond, "1"), Nodes{"/player"});
   EXPECT_EQ(restarts.count("/player", kSecond), 1U);
   restarts.onHeard("/player", 2 * kSecond);
-  EXPECT_EQ(restarts.advance(8 * kSecond, {"/player"}), Names());
-  EXPECT_EQ(restarts.advance(8 * kSecond, {}), Names{"/player restarted at 1, back as usual"});
+  EXPECT_EQ(restarts.advance(8 * kSecond, {"/player"}), Nodes());
+  EXPECT_EQ(restarts.advance(8 * kSecond, {}), Nodes{"/player restarted at 1, back as usual"});
 }
 
 TEST(Restarts, AreForgottenWhenTheClockIsSet) {
@@ -76,7 +76,7 @@ TEST(Restarts, AreForgottenWhenTheClockIsSet) {
   restarts.onClockSet();
   EXPECT_EQ(restarts.count("/player", 0), 0U);
   restarts.onHeard("/player", 0);
-  EXPECT_EQ(restarts.advance(kSecond, {}), Names());
+  EXPECT_EQ(restarts.advance(kSecond, {}), Nodes());
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "../core/evidence/recordings.h"
 #include "../ros/serialized.h"
+#include "../times.h"
 #include "self_awareness/core/evidence/count/trainer.h"
 
 namespace self_awareness {
@@ -28,8 +29,6 @@ ros1::TrainedModel model() {
   model.statistics.pair(0, 0).add(5);
   return model;
 }
-
-constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 
 /// Of a robot that tells its mode.
 ros1::TrainedModel modelWithModes() {

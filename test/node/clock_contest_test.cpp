@@ -2,10 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "../times.h"
+
 namespace self_awareness {
 namespace {
 
-constexpr std::int64_t kSecond = 1000000000;
 constexpr std::int64_t kTick = kSecond / 40;
 
 class ClockContestTest : public testing::Test {

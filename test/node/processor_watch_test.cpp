@@ -4,14 +4,13 @@
 
 #include <cstdint>
 
+#include "../times.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness {
 namespace {
 
-constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 constexpr std::int64_t kPause = kSecond / 40;
-constexpr std::int64_t kStart = 1790000000 * kSecond;
 
 // The clocks are the test's, the kernel's pressure is the machine's: what a look says may be more
 // than what the test says, but never less.

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "../problem.h"
+#include "../times.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/stable_name.h"
@@ -23,8 +24,6 @@
 
 namespace self_awareness::ros1 {
 namespace {
-
-constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 
 /// Why rules are refused; empty: they are not.
 std::string problemIn(const EncodingRules& rules) {

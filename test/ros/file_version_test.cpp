@@ -31,7 +31,7 @@ namespace {
 using self_awareness::FileVersion;
 using topic_tools::ShapeShifter;
 
-constexpr std::int64_t kBegin = 1790000000LL * core::kNanosecondsPerSecond;
+constexpr std::int64_t kBeginOfLog = 1790000000LL * core::kNanosecondsPerSecond;
 
 /// Definition and bytes of a message as another version of this package would write it.
 struct Stored {
@@ -50,14 +50,14 @@ class FileVersionTest : public ModelFileTest {
 
   std::string log() {
     EventLogWriter log(path("log"));
-    log.start(startOfRecording(rules_, kBegin));
+    log.start(startOfRecording(rules_, kBeginOfLog));
     EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
     core::Vocabulary vocabulary;
     for (int k = 0; k < 50; ++k) {
-      packer.add({kBegin + k * 1000000LL, vocabulary.intern({"/a", "/x", "T"})}, vocabulary);
+      packer.add({kBeginOfLog + k * 1000000LL, vocabulary.intern({"/a", "/x", "T"})}, vocabulary);
     }
-    packer.flush(kBegin + core::kNanosecondsPerSecond);
-    log.writeGraph(Graph(), kBegin);
+    packer.flush(kBeginOfLog + core::kNanosecondsPerSecond);
+    log.writeGraph(Graph(), kBeginOfLog);
     log.close();
     return path("log");
   }

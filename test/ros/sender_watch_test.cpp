@@ -6,11 +6,12 @@
 #include <optional>
 #include <string>
 
+#include "../times.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
 constexpr std::int64_t kMillisecond = 1000000;
-constexpr std::int64_t kSecond = 1000 * kMillisecond;
 using Link = std::shared_ptr<SenderWatch::Link>;
 using Doubled = std::set<core::SourceGraph::Publication>;
 

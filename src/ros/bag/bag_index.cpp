@@ -20,11 +20,10 @@ namespace {
 
 using namespace bag_records;  // NOLINT: the format's words, in this file only
 
-constexpr std::uint64_t kFileHeaderBytes = 4096;  // every writer fills it up to this
-constexpr std::uint64_t kIndexEntryBytes = 12;    // of a message in a record of the index
+constexpr std::uint64_t kIndexEntryBytes = 12;  // of a message in a record of the index
 // Entries that are read at once.
 constexpr std::uint64_t kEntriesPerPiece = 1 << 14;
-constexpr std::size_t kLongestQuote = 100;  // of a name in an error [bytes]
+constexpr std::size_t kLongestQuotedName = 100;  // of a name in an error [bytes]
 
 struct ChunkInfo {
   std::uint64_t position = 0;
@@ -123,7 +122,7 @@ class IndexReader {
   }
 
   static std::string quoted(std::string_view name) {
-    return "'" + printable(name, kLongestQuote) + "'";
+    return "'" + printable(name, kLongestQuotedName) + "'";
   }
 
   /// A connection that is there again, as it is in every chunk, must be what it was.

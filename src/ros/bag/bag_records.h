@@ -23,6 +23,9 @@ class EncryptedError : public rosbag::BagException {
 };
 
 constexpr std::string_view kFormat = "#ROSBAG V2.0\n";  // at the beginning of the file
+// Every writer fills header and data of the file's header up to this, so that they can be written
+// again at the end; rosbag does not look how long they are.
+constexpr std::size_t kFileHeaderBytes = 4096;
 
 enum class Op : std::uint8_t {
   kMessage = 0x02,

@@ -12,8 +12,6 @@ namespace {
 
 using namespace bag_records;  // NOLINT: the format's words, in this file only
 
-constexpr std::uint64_t kFileHeaderBytes = 4096;  // every writer fills it up to this
-
 std::int64_t timeIn(std::string_view header, std::string_view name) {
   std::string_view value = field(header, name);
   return takeTime(value);

@@ -17,9 +17,6 @@ namespace {
 
 using namespace bag_records;  // NOLINT: the format's words, in this file only
 
-// Header and data of the file's header are of this length together, so that they can be written
-// again at the end; rosbag does so, too, and does not look how long they are.
-constexpr std::size_t kFileHeaderBytes = 4096;
 // As rosbag's writer has them.
 constexpr std::size_t kChunkBytes = std::size_t{768} * 1024;
 constexpr int kLz4BlockSize = 6;  // 1 MB
@@ -44,7 +41,7 @@ std::string numberOf(std::string_view name, Number number) {
   return fieldOf(name, bytesOf(number));
 }
 
-std::string opOf(Op op) {
+std::string fieldOfOp(Op op) {
   return numberOf("op", static_cast<std::uint8_t>(op));
 }
 
@@ -98,13 +95,14 @@ void BagWriter::write(const ros::Time& stamp, const Topic& topic, const Type& ty
       data += fieldOf(name, value);
     }
     connections_.push_back(recordOf(
-        numberOf("conn", number) + opOf(Op::kConnection) + fieldOf("topic", topic.name), data));
+        numberOf("conn", number) + fieldOfOp(Op::kConnection) + fieldOf("topic", topic.name),
+        data));
     waiting_ += connections_.back();
   }
   places_[number].push_back({stamp, static_cast<std::uint32_t>(waiting_.size())});
-  waiting_ +=
-      recordOf(numberOf("conn", number) + opOf(Op::kMessage) + fieldOf("time", timeBytes(stamp)),
-               {reinterpret_cast<const char*>(content_.data()), content_.size()});
+  waiting_ += recordOf(
+      numberOf("conn", number) + fieldOfOp(Op::kMessage) + fieldOf("time", timeBytes(stamp)),
+      {reinterpret_cast<const char*>(content_.data()), content_.size()});
   if (kind_ == Chunks::kOfOneMessage || waiting_.size() >= kChunkBytes) {
     writeChunk();
   }
@@ -127,12 +125,13 @@ void BagWriter::writeChunk() {
     }
     const auto count = static_cast<std::uint32_t>(places.size());
     chunk.counts.emplace_back(number, count);
-    index += recordOf(numberOf("conn", number) + numberOf("count", count) + opOf(Op::kIndex) +
+    index += recordOf(numberOf("conn", number) + numberOf("count", count) + fieldOfOp(Op::kIndex) +
                           numberOf("ver", std::uint32_t{1}),
                       entries);
   }
   const bool compress = kind_ == Chunks::kCompressed;
-  const std::string header = fieldOf("compression", compress ? "lz4" : "none") + opOf(Op::kChunk) +
+  const std::string header = fieldOf("compression", compress ? "lz4" : "none") +
+                             fieldOfOp(Op::kChunk) +
                              numberOf("size", static_cast<std::uint32_t>(waiting_.size()));
   append(recordOf(header, compress ? compressed(std::move(waiting_)) : waiting_) + index);
   waiting_.clear();
@@ -156,7 +155,7 @@ void BagWriter::close() {
     }
     rest += recordOf(numberOf("chunk_pos", chunk.position) +
                          numberOf("count", static_cast<std::uint32_t>(chunk.counts.size())) +
-                         fieldOf("end_time", timeBytes(chunk.last)) + opOf(Op::kChunkInfo) +
+                         fieldOf("end_time", timeBytes(chunk.last)) + fieldOfOp(Op::kChunkInfo) +
                          fieldOf("start_time", timeBytes(chunk.first)) +
                          numberOf("ver", std::uint32_t{1}),
                      counts);
@@ -172,7 +171,7 @@ void BagWriter::writeFileHeader(std::uint64_t index) {
   const std::string header =
       numberOf("chunk_count", static_cast<std::uint32_t>(chunks_.size())) +
       numberOf("conn_count", static_cast<std::uint32_t>(connections_.size())) +
-      numberOf("index_pos", index) + opOf(Op::kFileHeader);
+      numberOf("index_pos", index) + fieldOfOp(Op::kFileHeader);
   const std::string bytes = recordOf(header, std::string(kFileHeaderBytes - header.size(), ' '));
   if (std::fseek(file_.get(), static_cast<long>(kFormat.size()), SEEK_SET) != 0 ||
       std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size() ||

@@ -14,7 +14,7 @@ using namespace bag_records;  // NOLINT: the format's words, in this file only
 
 namespace {
 
-constexpr std::size_t kLongestQuote = 32;  // [bytes]
+constexpr std::size_t kLongestCompression = 32;  // [bytes]
 
 rosbag::CompressionType compressionOf(const Chunk& chunk) {
   if (chunk.compression == "bz2") {
@@ -23,7 +23,8 @@ rosbag::CompressionType compressionOf(const Chunk& chunk) {
   if (chunk.compression == "lz4") {
     return rosbag::compression::LZ4;
   }
-  throw FormatError("unknown compression '" + printable(chunk.compression, kLongestQuote) + "'");
+  throw FormatError("unknown compression '" + printable(chunk.compression, kLongestCompression) +
+                    "'");
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ class FormerBagCheck {
         takeField(fields);
       }
       records_.push_back(position);
-      const Op op = opOf(head.header);
+      const Op op = bag_records::opOf(head.header);
       if (op == kDefinition) {
         checkType(head.header);
       }

@@ -14,7 +14,7 @@ constexpr std::size_t kMostSteps = 3;
 // Delay that is taken for the one across a step, which nobody knows [ns].
 constexpr std::int64_t kDelay = 1000000;
 
-auto placeOf(const BagIndexEntry& entry) {
+auto placeInBag(const BagIndexEntry& entry) {
   return std::tie(entry.chunk, entry.offset);
 }
 
@@ -24,11 +24,11 @@ bool goesBack(const std::vector<BagIndexEntry>& entries) {
   const BagIndexEntry* last = nullptr;  // in the file, of those before
   return std::any_of(entries.begin(), entries.end(), [&](const BagIndexEntry& entry) {
     for (; entries[before].stamp < entry.stamp - core::kLatestEvent; ++before) {
-      if (last == nullptr || placeOf(*last) < placeOf(entries[before])) {
+      if (last == nullptr || placeInBag(*last) < placeInBag(entries[before])) {
         last = &entries[before];
       }
     }
-    return last != nullptr && placeOf(entry) < placeOf(*last);
+    return last != nullptr && placeInBag(entry) < placeInBag(*last);
   });
 }
 
@@ -75,7 +75,7 @@ std::vector<SetBack> countOn(BagIndex& index) {
   }
   std::vector<BagIndexEntry> entries = index.entries;
   std::sort(entries.begin(), entries.end(), [](const BagIndexEntry& a, const BagIndexEntry& b) {
-    return placeOf(a) < placeOf(b);
+    return placeInBag(a) < placeInBag(b);
   });
   const std::vector<Stretch> stretches = stretchesOf(entries, index.connections.size());
   if (stretches.size() > kMostSteps + 1 ||

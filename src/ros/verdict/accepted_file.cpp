@@ -11,8 +11,8 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr OneMessageFile kFile{kAcceptedFile, "/accepted", "what is accepted in it is damaged",
-                               4 << 20};
+constexpr OneMessageFile kFileOfAccepted{kAcceptedFile, "/accepted",
+                                         "what is accepted in it is damaged", 4 << 20};
 
 void checkContent(const self_awareness::Acceptances& accepted) {
   check(accepted.accepted.size() <= core::Acceptances::kMost, "there are too many");
@@ -51,11 +51,12 @@ void writeAccepted(const core::Acceptances& accepted, const std::string& path) {
     one.by = each.by;
     latest = std::max(latest, each.at);
   }
-  writeOneMessage(kFile, message, toRosTime(latest), path);
+  writeOneMessage(kFileOfAccepted, message, toRosTime(latest), path);
 }
 
 std::optional<core::Acceptances> readAccepted(const std::string& path) {
-  const auto message = readOneMessage<self_awareness::Acceptances>(kFile, path, checkContent);
+  const auto message =
+      readOneMessage<self_awareness::Acceptances>(kFileOfAccepted, path, checkContent);
   if (!message) {
     return std::nullopt;
   }

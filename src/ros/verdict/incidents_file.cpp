@@ -15,8 +15,8 @@ namespace {
 using self_awareness::SelfAwareness;
 
 // Names have 1000 bytes at most (kLongestName), and hardly any has more than a tenth of that.
-constexpr OneMessageFile kFile{kIncidentsFile, "/incidents", "the incidents in it are damaged",
-                               16 << 20};
+constexpr OneMessageFile kFileOfIncidents{kIncidentsFile, "/incidents",
+                                          "the incidents in it are damaged", 16 << 20};
 
 bool isId(std::uint64_t id) {
   return id > 0 && id < std::numeric_limits<std::int64_t>::max();
@@ -29,7 +29,7 @@ void checkNames(const std::vector<std::string>& names) {
         "the name of a component is too long");
 }
 
-void checkContent(const self_awareness::Incidents& incidents) {
+void checkIncidents(const self_awareness::Incidents& incidents) {
   check(incidents.incidents.size() <= kMostIncidents, "there are too many");
   for (const self_awareness::Incident& each : incidents.incidents) {
     check(each.level == SelfAwareness::WARN || each.level == SelfAwareness::ERROR,
@@ -94,11 +94,11 @@ core::Incident fromMessage(const self_awareness::Incident& message) {
 }
 
 void writeIncidents(const self_awareness::Incidents& incidents, const std::string& path) {
-  writeOneMessage(kFile, incidents, incidents.header.stamp, path);
+  writeOneMessage(kFileOfIncidents, incidents, incidents.header.stamp, path);
 }
 
 std::optional<self_awareness::Incidents> readIncidents(const std::string& path) {
-  return readOneMessage<self_awareness::Incidents>(kFile, path, checkContent);
+  return readOneMessage<self_awareness::Incidents>(kFileOfIncidents, path, checkIncidents);
 }
 
 }  // namespace self_awareness::ros1

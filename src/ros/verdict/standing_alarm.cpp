@@ -9,10 +9,10 @@ namespace self_awareness::ros1 {
 namespace {
 
 // Of many times the bytes that an alarm needs.
-constexpr OneMessageFile kFile{kStandingAlarmFile, "/standing_alarm", "the alarm in it is damaged",
-                               1 << 20};
+constexpr OneMessageFile kFileOfAlarm{kStandingAlarmFile, "/standing_alarm",
+                                      "the alarm in it is damaged", 1 << 20};
 
-void checkContent(const self_awareness::StandingAlarm& standing) {
+void checkAlarm(const self_awareness::StandingAlarm& standing) {
   using self_awareness::SelfAwareness;
   const SelfAwareness& alarm = standing.alarm;
   check(alarm.level <= SelfAwareness::ERROR, "its level is none");
@@ -30,12 +30,12 @@ void checkContent(const self_awareness::StandingAlarm& standing) {
 }  // namespace
 
 void writeStandingAlarm(const self_awareness::StandingAlarm& standing, const std::string& path) {
-  writeOneMessage(kFile, standing, standing.alarm.header.stamp, path);
+  writeOneMessage(kFileOfAlarm, standing, standing.alarm.header.stamp, path);
 }
 
 std::optional<self_awareness::StandingAlarm> readStandingAlarm(const std::string& path) {
   std::optional<self_awareness::StandingAlarm> standing =
-      readOneMessage<self_awareness::StandingAlarm>(kFile, path, checkContent);
+      readOneMessage<self_awareness::StandingAlarm>(kFileOfAlarm, path, checkAlarm);
   return standing && standing->alarm.level == self_awareness::SelfAwareness::ERROR ? standing
                                                                                    : std::nullopt;
 }

@@ -13,6 +13,7 @@
 
 #include "../../in_folder.h"
 #include "../../problem.h"
+#include "../../times.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
@@ -21,7 +22,6 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 constexpr std::int64_t kBegin = 1790000000 * kSecond;
 
 using Events = std::vector<std::pair<std::int64_t, std::string>>;  // stamp and node

@@ -13,13 +13,12 @@
 #include <string>
 #include <vector>
 
+#include "../../times.h"
 #include "../bag/bag_bytes.h"
 #include "model_file_case.h"
 
 namespace self_awareness::ros1 {
 namespace {
-
-constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 
 class BadModelsTest : public ModelFileTest {
  protected:

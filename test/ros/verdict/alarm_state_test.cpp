@@ -5,13 +5,12 @@
 #include <cmath>
 #include <string>
 
+#include "../../times.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
 using self_awareness::SelfAwareness;
-
-constexpr std::int64_t kWindow = 100000000;                // [ns]
-constexpr std::int64_t kStart = 1600000000 * 1000000000L;  // [ns]
 
 class AlarmStateTest : public testing::Test {
  protected:

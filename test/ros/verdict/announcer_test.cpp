@@ -6,11 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "../../times.h"
+
 namespace self_awareness::ros1 {
 namespace {
-
-constexpr std::int64_t kWindow = 100000000;                // [ns]
-constexpr std::int64_t kStart = 1600000000 * 1000000000L;  // [ns]
 
 core::Suspect silent(core::EventId id, std::int64_t onset, std::int64_t missed) {
   core::Suspect suspect;

@@ -4,10 +4,11 @@
 
 #include <vector>
 
+#include "../../times.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::int64_t kSecond = 1000000000;          // [ns]
 constexpr std::int64_t kSteady = 5000 * kSecond;      // steady time at the start
 constexpr std::int64_t kRos = 1600000000L * kSecond;  // ROS time at the start
 const std::vector<core::EventType> kTypes = {{"/player", "/scan", "T"},
