@@ -39,8 +39,9 @@ if [ "${1:-}" = quick ]; then
 fi
 build "${options[@]}" all tests
 use_loopback
+# Two at once: so the last tests of one do not leave a processor idle.
 for tests in gtest pytest roslaunch-check; do
-  run $tests make -C "$workspace/build" "run_tests_self_awareness_$tests" -j1
+  run $tests make -C "$workspace/build" "run_tests_self_awareness_$tests" -j2
 done
 # Live tests mostly wait.
 run rostest make -C "$workspace/build" run_tests_self_awareness_rostest -j5
