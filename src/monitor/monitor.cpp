@@ -108,7 +108,7 @@ std::string Monitor::reload() {
     if (!session_) {
       reports_.onNoModel(error.what());
     }
-    const std::string why = std::string(error.what()) + (session_ ? "; the old model stays" : "");
+    std::string why = std::string(error.what()) + (session_ ? "; the old model stays" : "");
     ROS_ERROR("%s", why.c_str());
     return why;
   }

@@ -14,7 +14,7 @@ namespace {
 
 const core::EventType kError{"/laser", "/rosout", "rosgraph_msgs/Log[level=8]"};
 
-ros1::Content line(std::uint8_t level, const std::string& text) {
+ros1::Content line(rosgraph_msgs::Log::_level_type level, const std::string& text) {
   rosgraph_msgs::Log log;
   log.header.frame_id = "somewhere";
   log.level = level;

@@ -47,7 +47,7 @@ std::vector<core::Event> events() {
   std::vector<core::Event> events;
   for (int i = 0; i < 300; ++i) {
     const std::int64_t stamp =
-        kStart + i * 100 * kMillisecond - (i < 200 ? 0 : 60 * core::kNanosecondsPerSecond);
+        kStart + i * kWindow - (i < 200 ? 0 : 60 * core::kNanosecondsPerSecond);
     if (i < 100 || (i >= 120 && i < 190) || i >= 200) {
       events.push_back({stamp, 0});
     }
@@ -126,6 +126,7 @@ class ReplayedMonitorTest : public InFolder {
   static std::vector<std::vector<std::uint8_t>> serialized(
       const std::vector<SelfAwareness>& messages) {
     std::vector<std::vector<std::uint8_t>> all;
+    all.reserve(messages.size());
     for (const SelfAwareness& message : messages) {
       all.push_back(ros1::serialized(message));
     }
