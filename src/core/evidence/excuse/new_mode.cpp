@@ -41,16 +41,19 @@ std::optional<std::int64_t> NewMode::closeWindow(const Unusual& window, Judgemen
     return std::nullopt;
   }
   since_ = lastOf(stopped_, window.heard());
+  std::int64_t first = since_;  // groups may have stopped at several moments
   for (const EventId id : stopped_) {
+    const std::int64_t stamp = window.heard().stamps()[id];
     std::int64_t& last = stopped_at_[model_->componentIndex(id)];
-    last = std::max(last, window.heard().stamps()[id]);
+    last = std::max(last, stamp);
+    first = std::min(first, stamp);
   }
   if (is_accepted_) {
     judgement.mode = namesOf(stopped_);
   } else if (!judgement.silent) {  // else it was there before all fell silent
     judgement.silent = Silent{{}, namesOf(stopped_), since_, true};
   }
-  return since_;
+  return first;
 }
 
 bool NewMode::explains(const Excess& excess, const Unusual& window) const {

@@ -230,6 +230,26 @@ TEST_F(NewModeTest, AnAcceptedOneIsNeitherSuspiciousNorAShareOfALimit) {
   }
 }
 
+// Nine that do not hear each other, but for the last one, which hears the first one.
+class NewModesTest : public StoppedTest {
+ protected:
+  NewModesTest() : StoppedTest(numberedTypes(9)) {
+    graph_->connect(types_[0].source, types_[0].scope, types_[8].source);
+    learn([](std::int64_t start, unsigned seed) {
+      return atRandom(9, start, kEnd, 100 * kMillisecond, seed);
+    });
+  }
+};
+
+TEST_F(NewModesTest, WhoStoppedFirstStaysExcusedWhenOthersStopTogether) {
+  constexpr std::int64_t kBefore = 60 * kSecond;
+  const std::optional<Silent> silent =
+      found({kBefore, kBefore, kBefore, kBefore, kAgo, kAgo, kAgo, kAgo, 0}).silent;
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->components.size(), 8U);
+  EXPECT_EQ(shares_, std::vector<double>(shares_.size(), 0));
+}
+
 // A client that asks a server, and four more that do not hear each other.
 class NewModeOfServersTest : public StoppedTest {
  protected:
