@@ -88,7 +88,8 @@ class Screen:
                  *lines.incidents(self._shown, width),
                  lines.component_head(self._sort, self._pattern, width)]
         self._head.contents = [(urwid.Text(line, wrap='clip'), ('pack', None)) for line in above]
-        focus = self._focus()
+        # Whoever has moved nothing sees the first line, where who fails is.
+        focus = self._focus() if self._listed.focus else ''
         found = self._shown.components(self._sort, self._pattern)
         self._names = [each.name for each in found]
         self._listed[:] = [urwid.AttrMap(_Row(lines.component(each, width)), None, _SELECTED)

@@ -108,6 +108,12 @@ def test_the_selected_component_is_highlighted_and_stays_so(shown: Shown) -> Non
     assert shown.selected() == ['/c']
 
 
+def test_who_fails_is_seen_first_by_whoever_has_moved_nothing(shown: Shown) -> None:
+    shown.tell('/b', '/c')
+    shown.tell('/a', '/b', '/c')
+    assert shown.selected() == ['/a']
+
+
 def test_who_is_selected_is_muted_after_yes_only_and_told_again(shown: Shown) -> None:
     assert shown.press('u') == 'nobody was muted here' and shown.called == []
     shown.tell('/a', '/player')
