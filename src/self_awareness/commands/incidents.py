@@ -2,12 +2,8 @@
 from __future__ import annotations
 
 import argparse
-import fnmatch
 import glob
 import os
-import re
-import time
-from datetime import datetime, timezone
 from typing import List, Optional, Sequence
 
 from self_awareness import KeptIncident, read_incidents
@@ -15,17 +11,11 @@ from self_awareness.commands import cli
 from self_awareness.recovery import history
 from self_awareness.recovery.history import Action
 from self_awareness.reporting import incidents_text
-from self_awareness.stamps import SECOND_NS, nanoseconds
 
 _EPILOG = """\
 A monitor keeps its last 100 incidents in NAME.incidents beside the flight recorder's files, also
 while it does not run. Near misses are suspicions that became no alarm.
-TIME is a time in UTC, as 2026-11-23 or 2026-11-23T04:30, or how long ago it was: 90s, 30min, 12h,
-7d.
 """
-
-_UNITS = {'s': 1, 'min': 60, 'h': 3600, 'd': 86400}
-_DATES = ('%Y-%m-%d', '%Y-%m-%dT%H:%M', '%Y-%m-%dT%H:%M:%S')
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -34,7 +24,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _incidents(arguments: argparse.Namespace) -> None:
-    found = [(path, [each for each in _read(path) if _is_asked_for(each, arguments)],
+    found = [(path, [each for each in _read(path) if arguments.id in (None, each.id)],
               _actions(path)) for path in arguments.file or _files()]
     if arguments.id is not None and not any(kept for _, kept, _ in found):
         raise ValueError(f'no incident {arguments.id} in '
@@ -96,31 +86,6 @@ def _actions(incidents: str) -> Sequence[Action]:
         return ()
 
 
-def _is_asked_for(incident: KeptIncident, arguments: argparse.Namespace) -> bool:
-    since, until = arguments.since, arguments.until
-    return (arguments.id in (None, incident.id)
-            and (arguments.over is None or incident.over == arguments.over)
-            and (since is None or not incident.over or incident.ended >= since)
-            and (until is None or incident.opened <= until)
-            and (arguments.component is None
-                 or bool(fnmatch.filter(incidents_text.named(incident), arguments.component))))
-
-
-def _stamp(text: str) -> int:
-    """Argument type: a time [ns]."""
-    ago = re.fullmatch(r'(\d{1,9})(s|min|h|d)', text)
-    if ago:
-        return nanoseconds(time.time()) - int(ago[1]) * _UNITS[ago[2]] * SECOND_NS
-    for form in _DATES:
-        try:
-            return nanoseconds(datetime.strptime(text, form).replace(
-                tzinfo=timezone.utc).timestamp())
-        except ValueError:
-            continue
-    raise argparse.ArgumentTypeError(
-        f'expected a time in UTC, as 2026-11-23T04:30, or one ago, as 12h, not {text!r}')
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = cli.parser('incidents', __doc__, _EPILOG)
     parser.add_argument('id', type=int, nargs='?', metavar='ID',
@@ -128,17 +93,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--file', action='append', metavar='FILE',
                         help='read this file of a monitor; may be given several times (default: '
                              'those of all monitors, in ROS_HOME)')
-    parser.add_argument('--component', metavar='PATTERN',
-                        help="only those that name this component, as /player or '/camera*'")
-    parser.add_argument('--since', type=_stamp, metavar='TIME',
-                        help='only those that ended after this time')
-    parser.add_argument('--until', type=_stamp, metavar='TIME',
-                        help='only those that began before this time')
-    state = parser.add_mutually_exclusive_group()
-    state.add_argument('--open', dest='over', action='store_false', default=None,
-                       help='only those that are open')
-    state.add_argument('--over', dest='over', action='store_true', default=None,
-                       help='only those that are over')
     parser.add_argument('--near-misses', action='store_true',
                         help='list also components with near misses only')
     parser.add_argument('--json', action='store_true',

@@ -3,18 +3,15 @@ from __future__ import annotations
 
 import argparse
 import os
-import shutil
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, Optional, Sequence
 
-from self_awareness import (EventType, EvidenceModel, ModelFileError, PaperModel, ResultBag,
-                            TrainedModel, recordings_in_event_log)
+from self_awareness import ModelFileError, ResultBag, TrainedModel, recordings_in_event_log
 from self_awareness.commands import cli
-from self_awareness.judging import EVIDENCE
 from self_awareness.learning.age import age_of, logs_of
 from self_awareness.parts import BagPart, look
 from self_awareness.recordings import is_bag
-from self_awareness.reporting import (age_text, delay_bins, model_text, rates_text,
-                                      recordings_text, verdict)
+from self_awareness.reporting import (age_text, model_text, rates_text, recordings_text,
+                                      verdict)
 from self_awareness.reporting.file_summary import (describe_version, summarise_event_log,
                                                    summarise_results)
 from self_awareness.reporting.model_summary import summarise, tuning_lines
@@ -46,9 +43,7 @@ def _info(arguments: argparse.Namespace) -> None:
         _info_of_results(arguments)
         return
     model = _load(arguments.model)
-    if arguments.pair is not None:
-        _print_pair(model, *(_find(model.event_types, text) for text in arguments.pair))
-    elif arguments.tuning:
+    if arguments.tuning:
         cli.print_lines(tuning_lines(model.tuning))
     elif arguments.json:
         cli.print_values(summarise(model))
@@ -96,10 +91,9 @@ def _info_of_recordings(arguments: argparse.Namespace) -> None:
 
 
 def _refuse(arguments: argparse.Namespace, why: str) -> None:
-    """Refuse the options that are for models alone."""
-    for option, given in (('pair', arguments.pair), ('tuning', arguments.tuning)):
-        if given:
-            raise ValueError(f'--{option}: {why}')
+    """Refuse the option that is for models alone."""
+    if arguments.tuning:
+        raise ValueError(f'--tuning: {why}')
 
 
 def _load(path: str) -> TrainedModel:
@@ -125,8 +119,6 @@ def _info_of_log(arguments: argparse.Namespace, recordings: int) -> None:
 
 
 def _info_of_results(arguments: argparse.Namespace) -> None:
-    if arguments.pair is not None:
-        raise ValueError(f'--pair: is for models, and {arguments.model} is a result bag')
     summary = summarise_results(arguments.model)
     if arguments.json:
         cli.print_values(summary)
@@ -167,44 +159,6 @@ def _print_log(summary: Dict[str, Any], details: bool) -> None:
     print(f'graph        {model_text.graph(summary)}')
 
 
-def _print_pair(model: TrainedModel, first: int, second: int) -> None:
-    print(f'delay from the last  {model.event_types[first]}')
-    print(f'to the current       {model.event_types[second]}')
-    if model.detectors == EVIDENCE:
-        bins = delay_bins.log_bins(EvidenceModel.of_all_pairs(model).delays(first, second))
-    else:
-        bins = delay_bins.paper_bins(model, first, second)
-        computed = PaperModel(model)
-        print(f'count {sum(count for _, _, count in bins)}, entropy '
-              f'{computed.entropies[first, second]:.4g} bit, '
-              f'weight {computed.weight(first, second):.4g}')
-    width = max(10, shutil.get_terminal_size().columns - 40)
-    cli.print_lines(delay_bins.drawn(bins, width) if bins
-                    else ['no delay was seen in training'])
-
-
-def _find(event_types: Sequence[EventType], text: str) -> int:
-    """Return the index of the event type that the text is, or is a part of.
-
-    Raises:
-        ValueError: there is none, or more than one; lists the candidates.
-    """
-    names = [str(kind) for kind in event_types]
-    if text in names:
-        return names.index(text)
-    found: List[str] = ([name for name in names if text in name]
-                        or [name for name in names if _bare(text) in _bare(name)])
-    if len(found) == 1:
-        return names.index(found[0])
-    problem = 'is a part of several event types' if found else 'is no event type of the model'
-    raise ValueError(f"--pair: '{text}' {problem}; name one of: {'; '.join(found or names)}")
-
-
-def _bare(text: str) -> str:
-    """Return names without their first slashes, as people type them."""
-    return ' '.join(word.lstrip('/') for word in text.split(' '))
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = cli.parser('info', __doc__)
     parser.add_argument('model', metavar='MODEL',
@@ -218,9 +172,6 @@ def _parser() -> argparse.ArgumentParser:
     cli.add_details(how)
     how.add_argument('--tuning', action='store_true',
                      help='print the numbers of the method that the model was trained with')
-    how.add_argument('--pair', nargs=2, metavar=('A', 'B'),
-                     help="draw the delays from the last A to the current B; event types are "
-                          "written 'SOURCE SCOPE TYPE', and a part that only one has is enough")
     other = parser.add_mutually_exclusive_group()
     other.add_argument('--model', dest='usual', metavar='MODEL',
                        help='the others are recordings: how often each topic came in them, beside '

@@ -6,10 +6,9 @@ from pathlib import Path
 import pytest
 from conftest import error_of, robot
 
-from self_awareness.commands import calibrate, info, merge, score, train
+from self_awareness.commands import calibrate, info, score, train
 
-PROGRAMS = {'train': train, 'calibrate': calibrate, 'score': score, 'info': info,
-            'merge': merge}
+PROGRAMS = {'train': train, 'calibrate': calibrate, 'score': score}
 
 
 def test_a_bag_with_one_event_has_no_delay(make_bag, robot_bags, tmp_path: Path, capsys) -> None:
@@ -83,15 +82,14 @@ def test_a_bad_model_is_named(contents: str, model_file: str, robot_bags, tmp_pa
     ('calibrate', '--budget', 'nan'), ('calibrate', '--budget', 'few'),
     ('score', '--unknown', 'never'),
     ('calibrate', '--cutoff', 'fpr=nan'), ('calibrate', '--inject', 'slow:/laser:nan'),
-    ('calibrate', '--settle-time', '-0.1'), ('info', '--pair', 'one')])
+    ('calibrate', '--settle-time', '-0.1')])
 def test_values_out_of_range_are_wrong_usage(program: str, option: str, value: str,
                                              model_file: str, robot_bags, tmp_path: Path,
                                              capsys) -> None:
     arguments = {'train': [robot_bags[0], '-o', str(tmp_path / 'm')],
                  'score': [robot_bags[0], '--model', model_file],
                  'calibrate': ['--model', model_file, '--normal', robot_bags[1], '-o',
-                               str(tmp_path / 'm')],
-                 'info': [model_file]}[program]
+                               str(tmp_path / 'm')]}[program]
     assert PROGRAMS[program].main([*arguments, f'{option}={value}']) == 2
     error, = capsys.readouterr().err.splitlines()
     assert error.startswith(f'{program}: error: ') and option in error

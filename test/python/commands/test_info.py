@@ -7,7 +7,6 @@ import os
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any, Dict
 
 import pytest
@@ -15,7 +14,6 @@ from conftest import robot, train_tuned
 
 from self_awareness import EvidenceModel, TrainedModel, Tuning
 from self_awareness.commands import calibrate, info, train
-from self_awareness.reporting.delay_bins import drawn, paper_bins
 
 LASER, SLAM = '/laser /scan std_msgs/String', '/slam /map std_msgs/String'
 
@@ -153,36 +151,6 @@ def test_people_read_the_same(model_file: str, evidence_model: str, capsys) -> N
         text = capsys.readouterr().out
         assert [part for part in parts if part not in text] == []
         assert ('death found after' in text) == (model == evidence_model)
-
-
-def test_a_pair_is_drawn(model_file: str, capsys) -> None:
-    assert info.main([model_file, '--pair', LASER, 'slam']) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].endswith(LASER) and lines[1].endswith(SLAM)
-    assert 'count 600' in lines[2] and 'entropy' in lines[2] and 'weight' in lines[2]
-    # The follower's delay is 31 to 37 ms: one bin of 10 ms.
-    assert lines[3].split()[:5] == ['0.030', '-', '0.040', '600', '100.0%']
-    assert len(lines) == 4
-
-
-@pytest.mark.parametrize('text', ['std_msgs', '/nothing'])
-def test_an_ambiguous_or_unknown_event_type_lists_the_candidates(model_file: str, text: str,
-                                                                 capsys) -> None:
-    assert info.main([model_file, '--pair', text, 'slam']) == 1
-    error = capsys.readouterr().err
-    assert text in error and LASER in error and SLAM in error and error.count('\n') == 1
-
-
-def test_a_wide_histogram_is_merged_into_rows_that_fit_a_screen() -> None:
-    trained: Any = SimpleNamespace(
-        histogram=lambda *_: {3: 10, 500: 80, 999: 9, 10 ** 12: 1}, quantile=lambda *_: 999,
-        bin_size=10_000_000, horizon_bins=0)
-    lines = drawn(paper_bins(trained, 0, 1), 20)
-    assert len(lines) == 21
-    shown = [int(line.split()[3]) if '-' in line else int(line.split()[2]) for line in lines]
-    assert sum(shown) == 100 and shown[0] == 10 and shown[-1] == 1 and max(shown) == 80
-    assert max(line.count('#') for line in lines) == 20
-    assert '...' in lines[-1]
 
 
 def test_a_reader_that_has_seen_enough_is_told_nothing(model_file: str) -> None:

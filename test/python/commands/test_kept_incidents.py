@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import json
 import re
-import time
 from pathlib import Path
 from typing import Any, Callable, List
 
@@ -60,34 +59,17 @@ def run(tmp_path: Path, capsys: Any) -> Callable[..., str]:
     return of
 
 
-def ids(run: Callable[..., str], *options: str) -> List[int]:
-    return [each['id'] for each in json.loads(run('--json', *options))]
-
-
 def test_one_line_for_an_incident(run: Callable[..., str]) -> None:
     head, columns, player, busy, camera, near = run().splitlines()
     assert head.endswith('watch.incidents: incidents: 3, open: 1')
     assert columns.split()[0] == 'opened'
-    assert player.split() == ['2026-09-21', '14:13:20', 'UTC', '20.0', 's', '/player', 'silent',
+    assert player.split() == ['2026-09-21', '14:13:20', 'UTC', '20', 's', '/player', 'silent',
                               '7', '2', '/slam,', '/navigation,', '/camera', 'and', '1', 'more',
                               '1']
     assert 'busy machine' in busy and ' open ' in camera
     assert near.strip().startswith('besides, components with near misses only: 1')
     assert '/quiet' in run('--near-misses')
-
-
-def test_filters(run: Callable[..., str]) -> None:
-    assert ids(run) == [1, 2, 3, 4]
-    assert ids(run, '--open') == [3]
-    assert ids(run, '--over') == [1, 2, 4]
-    assert ids(run, '--component', '/camera') == [1, 3], 'also where it is named besides'
-    assert ids(run, '--component', '/*a*') == [1, 3]
-    assert ids(run, '--since', '2026-09-21T15:00') == [2, 3, 4]
-    assert ids(run, '--until', '2026-09-21T15:00') == [1]
-    assert ids(run, '--since', '2026-09-21', '--until', '2026-09-21T16:30') == [1, 2, 3]
-    assert ids(run, '--since', '2026-09-22') == [3], 'it is open'
-    days = int((time.time() - NOON_S) / 86400) + 1
-    assert days < 1 or ids(run, '--since', f'{days}d') == [1, 2, 3, 4]
+    assert [each['id'] for each in json.loads(run('--json'))] == [1, 2, 3, 4]
 
 
 def test_one_is_shown_with_its_record_and_the_way_to_its_report(
@@ -149,7 +131,6 @@ def test_all_monitors_are_found_in_ros_home(tmp_path: Path, capsys: Any,
 
 def test_errors_name_what_is_wrong(run: Callable[..., str], tmp_path: Path, capsys: Any) -> None:
     assert 'no incident 99 in ' in run('99', code=1)
-    assert 'expected a time in UTC' in run('--since', 'yesterday', code=2)
     damaged = tmp_path / 'damaged.incidents'
     damaged.write_bytes(b'no bag')
     assert incidents.main(['--file', str(damaged)]) == 1

@@ -2,17 +2,22 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass
-from typing import List, Optional, Tuple, Union
+from typing import List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
-from self_awareness import Alarm, Reason, Suspect
-from self_awareness.reporting.delay_bins import log_bins, paper_bins
+from self_awareness import Alarm, Reason, Suspect, TrainedModel
 from self_awareness.reporting.report.judged import Judged
+from self_awareness.reporting.text import delay
 from self_awareness.stamps import SECOND_NS
 
-_LAST_OF_OPEN_BIN = 2.0
+_Bins = Tuple[List[float], List[int]]  # edges [s], one more than bins, and counts; empty: none
+
+_LAST_OF_OPEN_BIN = 2
+_MOST_ROWS = 40
+_OWN_ROWS = 0.99  # share of the delays that have rows of their own
 _STEPS_OF_SPAN = 4
 _LEAST_SPAN_S = 1.0
 _BEFORE_S, _AFTER_S, _LONGEST_S = 20.0, 10.0, 120.0
@@ -76,35 +81,62 @@ def _delays(judged: Judged, suspect: Suspect) -> Optional[Histogram]:
     if seen is None or suspect.id >= len(names) or after not in ('', *names):
         return None
     other = names.index(after) if after else suspect.id
-    bins = (paper_bins(trained, other, suspect.id) if judged.by.evidence is None
-            else log_bins(judged.by.evidence.delays(other, suspect.id)))
-    if not bins:
+    edges, counts = (_paper_bins(trained, other, suspect.id) if judged.by.evidence is None
+                     else _log_bins(judged.by.evidence.delays(other, suspect.id)))
+    if not counts:
         return None
-    begin, end, _ = bins[-1]
-    last = end if math.isfinite(end) else _LAST_OF_OPEN_BIN * begin
     caption = (f'gaps between two {names[suspect.id]}' if other == suspect.id
                else f'delays from {names[other]} to {names[suspect.id]}')
     usual = (suspect.reason.usual_shortest, suspect.reason.usual_longest)
     known = suspect.reason.unit == 's' and not math.isnan(sum(usual))
     return Histogram(f'{caption}; shaded: what is usual' if known else caption,
-                     [*(low for low, _, _ in bins), last], [count for _, _, count in bins],
-                     *seen, usual if known else None)
+                     edges, counts, *seen, usual if known else None)
+
+
+def _log_bins(counted: Sequence[Tuple[int, int]]) -> _Bins:
+    """Return the bins of the evidence detector from the first delay to the last one.
+
+    Args:
+        counted: shortest delay [ns] and count of each.
+    """
+    filled = [index for index, (_, count) in enumerate(counted) if count]
+    if not filled:
+        return [], []
+    begins = [shortest / SECOND_NS for shortest, _ in counted]
+    edges = [*begins, _LAST_OF_OPEN_BIN * begins[-1]]
+    return (edges[filled[0]:filled[-1] + 2],
+            [count for _, count in counted[filled[0]:filled[-1] + 1]])
+
+
+def _paper_bins(trained: TrainedModel, from_id: int, to_id: int) -> _Bins:
+    """Return the bins of the paper's detector; neighbours are one where there are many."""
+    counts = trained.histogram(from_id, to_id)
+    if not counts:
+        return [], []
+    first, last = min(counts), trained.quantile(from_id, to_id, _OWN_ROWS)
+    # As many bins to a row as leave few rows: 1, 2, 5, 10, 20, 50 and so on.
+    merged = next(step * 10 ** power for power in range(19) for step in (1, 2, 5)
+                  if (last - first) // (step * 10 ** power) < _MOST_ROWS)
+    start = first // merged * merged
+    by_row: Counter = Counter()
+    for index, count in counts.items():
+        by_row[(min(index, last + merged) - start) // merged] += count
+    rows = range(max(by_row) + 1)
+    begins = [start + row * merged for row in rows]
+    is_open = begins[-1] > last or begins[-1] <= (trained.horizon_bins or math.inf) < (
+        begins[-1] + merged)
+    begins.append(_LAST_OF_OPEN_BIN * begins[-1] if is_open else begins[-1] + merged)
+    unit = trained.bin_size / SECOND_NS
+    return [begin * unit for begin in begins], [by_row[row] for row in rows]
 
 
 def _seen(reason: Reason) -> Optional[Tuple[Optional[float], str]]:
     """Return the delay that was seen [s], if it is one, and its words."""
     if reason.unit == 's' and reason.value > 0 and reason.kind not in ('never came', 'stranger'):
-        return reason.value, f'now: {seconds(reason.value)}'
+        return reason.value, f'now: {delay(reason.value)}'
     if reason.unit == 'requests':
         return None, f'now: none after the last {reason.value:.0f}'
     return None
-
-
-def seconds(value: float) -> str:
-    """Return seconds in the unit that shows them."""
-    if value < 0.0995:
-        return f'{1000 * value:.3g} ms'
-    return f'{value:.3g} s' if value < 99.5 else f'{value:.0f} s'
 
 
 def _rate(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Counts]:
@@ -124,6 +156,6 @@ def _rate(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Counts]:
     stamps = (judged.edges_of(suspect.id)[1:-1] - judged.recording.origin) / SECOND_NS
     counts = (np.searchsorted(stamps, times, side='right')
               - np.searchsorted(stamps, times - span, side='right'))
-    return Counts(f'{judged.recording.event_types[suspect.id]} in {seconds(span)}; '
+    return Counts(f'{judged.recording.event_types[suspect.id]} in {delay(span)}; '
                   'blue band: what is usual; red: the alarm', times.tolist(), counts.tolist(),
                   (max(usual - spread, 0.0), usual + spread), begin, end)
