@@ -112,8 +112,7 @@ class Model:
             self._computed = EvidenceModel(self.trained)
         recording = recordings.read(self.trained, parts[0])
         judge = evidence_judge(self.trained, parameters or DetectorParameters(), self._computed)
-        return Alarms(recording, judge(recording.stamps, recording.ids, recording.end,
-                                       recording.event_types, **recording.known))
+        return Alarms(recording, recording.judged_by(judge))
 
     def coverage(self) -> List[Coverage]:
         """Return how soon the death of each component is found, and whether late answers are.

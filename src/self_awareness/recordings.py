@@ -4,15 +4,15 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import (Any, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence,
-                    Set, Tuple)
+from typing import (Any, Callable, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional,
+                    Sequence, Set, Tuple)
 
 import numpy as np
 
 from self_awareness import (LATEST_EVENT, LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules,
-                            EventType, ModelFileError, RecordedEvents, Recording,
-                            TrainedModel, Waiting, find_clock_steps, missing_subscriptions,
-                            progress, read_events, summarise_bag)
+                            EventType, ModelFileError, RecordedEvents, Recording, TrainedModel,
+                            Verdicts, Waiting, find_clock_steps, missing_subscriptions, progress,
+                            read_events, summarise_bag)
 from self_awareness.output_files import MODEL, RESULT_BAG
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
@@ -127,11 +127,11 @@ class RecordingEvents:
         path, start = begun[-1]
         return f'{(stamp - start) / SECOND_NS:.1f} s of {os.path.basename(path)}'
 
-    @property
-    def known(self) -> Dict[str, Any]:
-        """What a judge is told besides the events, by the names of its arguments."""
-        return {'clock_steps': self.clock_steps, 'waiting': self.waiting, 'hosts': self.hosts,
-                'missing': self.missing, 'attributes': self.attributes, 'senders': self.senders}
+    def judged_by(self, judge: Callable[..., Verdicts], monitor: Any = None) -> Verdicts:
+        """Return what a judging.Judge says; a ReplayedMonitor is told of each window."""
+        return judge(self.stamps, self.ids, self.end, self.event_types, monitor,
+                     clock_steps=self.clock_steps, waiting=self.waiting, hosts=self.hosts,
+                     missing=self.missing, attributes=self.attributes, senders=self.senders)
 
     @cached_property
     def heard(self) -> np.ndarray:
@@ -269,6 +269,32 @@ def _senders(event_types: Iterable[EventType]) -> Dict[str, Set[str]]:
 def overlap(a: Recording, b: Recording) -> bool:
     """Return whether two recordings are the same, at least in part; names do not matter."""
     return a.fingerprint == b.fingerprint and a.start <= b.end and b.start <= a.end
+
+
+class DistinctRecordings:
+    """Recordings that are not the same, even in part."""
+
+    def __init__(self) -> None:
+        self._known: Dict[int, List[Tuple[str, Recording]]] = {}
+
+    def same_as(self, name: str, recording: Recording) -> str:
+        """Add a recording, or return the name of one that is the same, at least in part."""
+        same = self._known.setdefault(recording.fingerprint, [])
+        for other_name, other in same:
+            if overlap(other, recording):
+                return other_name
+        same.append((name, recording))
+        return ''
+
+    def add(self, name: str, recording: Recording) -> None:
+        """Add a recording.
+
+        Raises:
+            ValueError: one is the same, at least in part.
+        """
+        same = self.same_as(name, recording)
+        if same:
+            raise ValueError(f'{name}: the same recording as {same}; name it once')
 
 
 def is_bag(path: str) -> bool:

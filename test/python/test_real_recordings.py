@@ -72,7 +72,7 @@ def test_without_an_option_the_outage_is_found(wheeled_robot: Path, tmp_path: Pa
     model = str(tmp_path / 'm')
     assert train.main([*(str(wheeled_robot / f'{day}_normal.bag') for day in ('feb13', 'jan17')),
                        '-o', model, '--details']) == 0
-    assert 'start-up left out of 1 of 2 recordings: the first 23.8 s' in capsys.readouterr().out
+    assert 'feb13_normal.bag@23.8: ' in capsys.readouterr().out
     outage = next(alarm for alarm in alarms_in(wheeled_robot / 'feb13_outage.bag', model)
                   if alarm.end > 28.0)
     assert 28.0 < outage.start < 31.0

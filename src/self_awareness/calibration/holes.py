@@ -83,30 +83,22 @@ def without(parts: Iterable[BagPart], holes: Sequence[Hole]) -> List[BagPart]:
             for piece in _pieces(part, [hole.silence for hole in holes if hole.part == part])]
 
 
-def deciding(holes: Sequence[Hole], coverage: Sequence[Coverage]) -> List[Hole]:
-    """Return the holes that make the death of a component be found later.
+def lines(holes: Sequence[Hole], coverage: Sequence[Coverage], details: bool,
+          mend: str) -> List[str]:
+    """Return a line for every hole that makes a death be found later: who was silent when and
+    where, and what that does; and what to do about it.
 
     Args:
         holes: what find() returned.
         coverage: of the model with limits that know the holes.
+        details: also of the others.
+        mend: what to do, in words.
     """
-    found_s = _found_s(coverage)
-    return [hole for hole in holes if _decides(hole, found_s.get(hole.component))]
-
-
-def lines(holes: Sequence[Hole], coverage: Sequence[Coverage]) -> List[str]:
-    """Return a line for every hole: who was silent when and where, and what that does.
-
-    Args:
-        holes: what find() returned.
-        coverage: of the model with limits that know the holes.
-    """
-    found_s = _found_s(coverage)
-    return [_line(hole, found_s.get(hole.component)) for hole in holes]
-
-
-def _found_s(coverage: Sequence[Coverage]) -> Dict[str, Optional[float]]:
-    return {each.component: each.death_found_after for each in coverage}
+    found_s = {each.component: each.death_found_after for each in coverage}
+    deciding = [hole for hole in holes if _decides(hole, found_s.get(hole.component))]
+    return [*(_line(hole, found_s.get(hole.component)) for hole in (holes if details
+                                                                    else deciding)),
+            *([f'if that was a fault, {mend}'] if deciding else [])]
 
 
 def _decides(hole: Hole, found_s: Optional[float]) -> bool:

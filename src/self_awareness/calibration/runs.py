@@ -16,7 +16,7 @@ from self_awareness import TrainedModel, Verdicts, progress
 from self_awareness.calibration import fault_injection, heads_and_tails
 from self_awareness.calibration.fault_injection import InjectedFault, of_each_source
 from self_awareness.judging import Judge
-from self_awareness.recordings import RecordingEvents, overlap
+from self_awareness.recordings import DistinctRecordings, RecordingEvents, overlap
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
 NORMAL, ABNORMAL, LEFT_OUT = 0, 1, -1
@@ -215,17 +215,15 @@ def check_unseen(trained: TrainedModel, recordings: Sequence[RecordingEvents]) -
     Raises:
         ValueError: names the recording.
     """
-    for index, recording in enumerate(recordings):
+    distinct = DistinctRecordings()
+    for recording in recordings:
         for other in trained.recordings:
             if overlap(recording.recording, other):
                 raise ValueError(f'{recording.part}: the model was trained on it (as '
                                  f'{other.bag}), so that it looks better than it is; name '
                                  'another recording, or a part that was not trained on '
                                  '(BAG@START-END)')
-        for before in recordings[:index]:
-            if overlap(recording.recording, before.recording):
-                raise ValueError(f'{recording.part}: the same recording as {before.part}; name it '
-                                 'once')
+        distinct.add(str(recording.part), recording.recording)
 
 
 def _labels(run: Run, verdicts: Verdicts, window: int) -> np.ndarray:

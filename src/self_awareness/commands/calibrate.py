@@ -15,7 +15,6 @@ from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, 
                             accepted_file)
 from self_awareness.calibration import confidence, heads_and_tails, holes, limits
 from self_awareness.calibration.fault_injection import FORMS, InjectedFault, of_known_source
-from self_awareness.calibration.heads_and_tails import Silences
 from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
                                                 fault_results, labelled)
 from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, Injections,
@@ -80,7 +79,10 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     parameters = cli.detector_parameters(arguments)
     _check_options(arguments)
     trained = load_model(arguments.model, arguments.detector)
-    accepted = _accepted(arguments, trained)
+    accepted = accepted_file.of_either(arguments.model, arguments.output)
+    goes_elsewhere = os.path.realpath(arguments.model) != os.path.realpath(arguments.output)
+    if goes_elsewhere:
+        accepted = accepted_file.learned(accepted, trained)[1]
     faults = [of_known_source(fault, trained.event_types) for fault in arguments.inject]
 
     normal = _read(trained, normal_bags, arguments.skip_bad, lambda part: part)
@@ -94,7 +96,11 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                                 accepted)
         cli.print_lines(verdict.lines(trained))
         silences = [(each.part, heads_and_tails.silences(each)) for each in normal]
-        _say_holes(trained, silences, arguments.details)
+        found = holes.find(silences, holes.known_silences(trained))
+        left = ' '.join(map(str, holes.without([part for part, _ in silences], found)))
+        for line in holes.lines(found, trained.coverage(), arguments.details,
+                                f'leave it out: --normal {left}'):
+            cli.warn('calibrate', line)
         if arguments.details:
             cli.print_lines([
                 *heads_and_tails.lines(silences, 'BAG@START', 'BAG@0-END'),
@@ -118,7 +124,9 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         save_roc(arguments.roc, f'ROC of windows of {trained.window / SECOND_NS:g} s',
                  [(result.fault, result.roc) for result in measured.faults], measured.point)
     trained.save(arguments.output)
-    _keep_accepted(arguments, trained)
+    if goes_elsewhere:  # else the file is there
+        accepted = accepted_file.of_either(arguments.model, arguments.output)
+        cli.print_lines(accepted_file.keep_what_is_left(accepted, trained, arguments.output))
     cli.say_skipped('calibrate', normal_bags.bad + faulty_bags.bad)
     cli.print_lines([f'written: {arguments.output}',
                      *verdict.next_steps(trained, arguments.output)])
@@ -141,35 +149,6 @@ def _read(trained: TrainedModel, named: Named, skip_bad: bool,
         cli.read_recording('calibrate', trained, what(part)), part=part)))
     named.check(skip_bad and bool(events))
     return events
-
-
-def _goes_elsewhere(arguments: argparse.Namespace) -> bool:
-    return os.path.realpath(arguments.model) != os.path.realpath(arguments.output)
-
-
-def _accepted(arguments: argparse.Namespace, trained: TrainedModel) -> List[Acceptance]:
-    """Return what the calibrated model will not judge."""
-    accepted = accepted_file.of_either(arguments.model, arguments.output)
-    return (accepted_file.learned(accepted, trained)[1] if _goes_elsewhere(arguments)
-            else accepted)
-
-
-def _keep_accepted(arguments: argparse.Namespace, trained: TrainedModel) -> None:
-    if _goes_elsewhere(arguments):  # else the file is there
-        accepted = accepted_file.of_either(arguments.model, arguments.output)
-        cli.print_lines(accepted_file.keep_what_is_left(accepted, trained, arguments.output))
-
-
-def _say_holes(trained: TrainedModel, silences: Sequence[Tuple[BagPart, Silences]],
-               details: bool) -> None:
-    found = holes.find(silences, holes.known_silences(trained))
-    coverage = trained.coverage()
-    deciding = holes.deciding(found, coverage)
-    for line in holes.lines(found if details else deciding, coverage):
-        cli.warn('calibrate', line)
-    if deciding:
-        left = ' '.join(map(str, holes.without([part for part, _ in silences], found)))
-        cli.warn('calibrate', f'if that was a fault, leave it out: --normal {left}')
 
 
 def _check_options(arguments: argparse.Namespace) -> None:

@@ -8,9 +8,9 @@ from self_awareness import TrainedModel
 from self_awareness.commands import cli
 from self_awareness.judging import PAPER
 from self_awareness.output_files import MODEL, check_outputs
+from self_awareness.recordings import DistinctRecordings
 from self_awareness.reporting import verdict
 from self_awareness.training import numbered_names
-from self_awareness.training.many_bags import DistinctRecordings
 from self_awareness.training.numbered_names import Renames
 
 _EPILOG = """\
@@ -69,8 +69,8 @@ def _load(path: str, known: DistinctRecordings, renames: Renames) -> TrainedMode
         raise ValueError(f'{path}: by the names of all models, {error}; train it again with '
                          'the others\' rules (train --rename)') from error
     for recording in model.recordings:
-        other = known.add(path, recording)
-        if other is not None:
+        other = known.same_as(path, recording)
+        if other:
             raise ValueError(f'{path}: was trained on a recording ({recording.bag}) that '
                              f'{other} was trained on, too; it would count twice')
     return model

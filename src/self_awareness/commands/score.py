@@ -107,14 +107,13 @@ def _score(arguments: argparse.Namespace) -> int:
     with result_bag(arguments.result_bag, arguments.model, trained,
                     threshold is not None, coverage) as replay:
         for recording in named.each(lambda part: cli.read_recording('score', trained, part)):
-            verdicts = judge(recording.stamps, recording.ids, recording.end,
-                             recording.event_types, replay(recording), **recording.known)
-            judged.append(Judged(by, recording, verdicts))
+            judged.append(Judged(by, recording, recording.judged_by(judge, replay(recording))))
             found += _print(judged[-1], arguments.details)
         if not judged:
             named.check()
     if threshold is not None:
-        _print_sum(judged, found)
+        seconds = seconds_of(each.recording.recording for each in judged)
+        print(f'{number_of(len(judged), "recording")}, {duration(seconds)}: {_counted(found)}')
     if arguments.csv is not None:
         save_table(arguments.csv, _COLUMNS, _rows(judged, threshold))
     if arguments.json is not None:
@@ -124,16 +123,11 @@ def _score(arguments: argparse.Namespace) -> int:
     if arguments.report is not None:
         save_report(arguments.report, [section(each, f'recording-{number}')
                                        for number, each in enumerate(judged, 1)])
-    if arguments.open:
-        _open(arguments.report)
+    if arguments.open and not webbrowser.open(Path(arguments.report).resolve().as_uri()):
+        cli.warn('score', f'no browser was found here: copy {arguments.report} to where there is '
+                 'one, and open it there')
     cli.end_with('score', named, arguments.skip_bad)
     return _ALARM if arguments.fail and any(each.verdicts.alarms for each in judged) else 0
-
-
-def _open(report: str) -> None:
-    if not webbrowser.open(Path(report).resolve().as_uri()):
-        cli.warn('score', f'no browser was found here: copy {report} to where there is one, and '
-                 'open it there')
 
 
 def _print(judged: Judged, details: bool) -> List[Incident]:
@@ -201,12 +195,6 @@ def _print_details(judged: Judged) -> None:
             print(f'  {said}:')
         for count, name in found:
             print(f'    {name}: {count}')
-
-
-def _print_sum(judged: Sequence[Judged], found: Sequence[Incident]) -> None:
-    """Print how many incidents all recordings show."""
-    seconds = seconds_of(each.recording.recording for each in judged)
-    print(f'{number_of(len(judged), "recording")}, {duration(seconds)}: {_counted(found)}')
 
 
 def _save_json(path: str, judged: Sequence[Judged], missing: str, bad: Sequence[str]) -> None:

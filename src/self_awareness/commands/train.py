@@ -11,7 +11,6 @@ from self_awareness import (BagError, EncodingRules, TrainedModel, accepted_file
                             progress)
 from self_awareness.calibration import heads_and_tails, holes
 from self_awareness.calibration.heads_and_tails import Silences
-from self_awareness.calibration.holes import Hole
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
@@ -97,7 +96,11 @@ def _train(arguments: argparse.Namespace) -> None:
             *heads_and_tails.start_up_lines([(each.part, each.start_up)
                                              for each in trained.trained_on]),
             *heads_and_tails.lines(_silences(trained), '--start', '--end')])
-    _say_holes(found, model, arguments)
+    left_out = arguments.leave_out_holes
+    for line in holes.lines(found, [] if left_out else model.coverage(),
+                            left_out or arguments.details, '--leave-out-holes trains on what came '
+                            'before and after it'):
+        cli.warn('train', f'left out: {line}' if left_out else line)
     cli.say_skipped('train', named.bad + trained.bad)
     cli.print_lines([f'written: {arguments.output}',
                      *verdict.next_steps(model, arguments.output)])
@@ -113,17 +116,6 @@ def _say(details: bool) -> Callable[[str], None]:
 
 def _silences(trained: Trained) -> List[Tuple[BagPart, Silences]]:
     return [(each.part, each.silences) for each in trained.trained_on]
-
-
-def _say_holes(found: Sequence[Hole], model: TrainedModel, arguments: argparse.Namespace) -> None:
-    left_out = arguments.leave_out_holes
-    coverage = [] if left_out else model.coverage()
-    deciding = holes.deciding(found, coverage)
-    for line in holes.lines(found if left_out or arguments.details else deciding, coverage):
-        cli.warn('train', f'left out: {line}' if left_out else line)
-    if deciding:
-        cli.warn('train', 'if that was a fault, --leave-out-holes trains on what came before and '
-                 'after it')
 
 
 def _live_graph(base: Optional[TrainedModel]) -> RobotGraph:

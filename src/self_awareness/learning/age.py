@@ -11,7 +11,7 @@ from self_awareness import (Acceptance, ComponentDrift, DetectorParameters, Evid
                             recordings)
 from self_awareness.judging import evidence_judge
 from self_awareness.parts import BagPart, Named, look
-from self_awareness.recordings import overlap
+from self_awareness.recordings import DistinctRecordings, overlap
 from self_awareness.stamps import SECOND_NS
 
 LEARNED, INCIDENT, SHORT = 'learned from', 'not normal', 'too short'
@@ -116,10 +116,9 @@ def age_of(path: str, trained: TrainedModel, named: Named, skip_bad: bool = Fals
     accepted = accepted_file.beside(path)
     computed = EvidenceModel(trained)
     heard: List[Heard] = []
+    distinct = DistinctRecordings()
     for found in named.each(lambda part: _heard(trained, computed, accepted, part)):
-        for other in heard:
-            if overlap(found.recording, other.recording):
-                raise ValueError(f'{found.part}: the same recording as {other.part}; name it once')
+        distinct.add(str(found.part), found.recording)
         heard.append(found)
     named.check(skip_bad and bool(heard))
     heard.sort(key=lambda each: each.origin)
@@ -154,11 +153,7 @@ def _heard(trained: TrainedModel, computed: EvidenceModel, accepted: Sequence[Ac
     first = int(events.stamps[0])
     if events.end - first < parameters.settle_time + _SHORTEST_NS:
         return left_out(SHORT)
-    judge = evidence_judge(trained, parameters, computed, accepted)
-    verdicts = judge(events.stamps, events.ids, events.end, events.event_types,
-                     clock_steps=events.clock_steps, waiting=events.waiting,
-                     hosts=dict(events.hosts), missing=events.missing,
-                     attributes=events.attributes, senders=events.senders)
+    verdicts = events.judged_by(evidence_judge(trained, parameters, computed, accepted))
     alarms = [*verdicts.alarms, *verdicts.suspicions]
     if alarms:
         return left_out(INCIDENT, f'{alarms[0].kind} {alarms[0].culprit}'.strip())

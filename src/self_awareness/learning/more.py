@@ -13,6 +13,7 @@ from self_awareness.learning.division import Division, divide
 from self_awareness.learning.logs import Log
 from self_awareness.output_files import replacing
 from self_awareness.parts import BagPart
+from self_awareness.recordings import overlap
 from self_awareness.stamps import SECOND_NS
 
 _BEFORE = '.before'
@@ -41,8 +42,7 @@ def _calibrated_on(heard: Heard, trained: Sequence[Recording],
     parts = []
     for each in calibrated:
         if each.fingerprint != heard.recording.fingerprint or any(
-                each.fingerprint == other.fingerprint and each.start <= other.end
-                and other.start <= each.end for other in trained):
+                overlap(each, other) for other in trained):
             continue
         # Whole seconds, as they are printed.
         begin = math.ceil((each.start - heard.origin) / SECOND_NS)

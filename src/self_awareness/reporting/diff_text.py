@@ -7,7 +7,7 @@ from typing import Any, Dict, List
 from self_awareness.comparison.changes import (DELAY, ENDED, GAP, GONE, NEW, RATE, Change,
                                                Comparison)
 from self_awareness.comparison.sides import Kind, Side
-from self_awareness.reporting.text import first_of, number_of, rounded
+from self_awareness.reporting.text import delay, first_of, number_of, rounded
 
 _MOST_UNSURE = 10
 
@@ -32,7 +32,7 @@ def numbers(change: Change) -> str:
                 f'({after / before:.2f} times)')
     difference = 1000.0 * (after - before)
     usual = 'usually up to ' if change.what == GAP else ''
-    return f'{usual}{_seconds(before)}, now {usual and "up to "}{_seconds(after)} ' \
+    return f'{usual}{delay(before)}, now {usual and "up to "}{delay(after)} ' \
            f'({difference:+.3g} ms)'
 
 
@@ -128,7 +128,3 @@ def _kind(kind: Kind) -> Dict[str, str]:
 def _side(side: Side) -> Dict[str, Any]:
     return {'file': side.name, 'is_recording': side.is_recording, 'duration': side.duration,
             'event_types': len(side.ids)}
-
-
-def _seconds(value: float) -> str:
-    return f'{rounded(1000.0 * value, 3)} ms' if value < 1.0 else f'{rounded(value, 3)} s'

@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Sequence
 from self_awareness import KeptIncident
 from self_awareness.recovery import words
 from self_awareness.recovery.history import Action
-from self_awareness.reporting.text import aligned, first_of
+from self_awareness.reporting.text import aligned, duration, first_of
 from self_awareness.stamps import SECOND_NS, moment, to_the_second
 
 _MOST_NAMED = 3
@@ -90,11 +90,7 @@ def _lasted(incident: KeptIncident) -> str:
         return 'open'
     if incident.unknown:
         return f'unknown since {to_the_second(incident.ended)}'
-    seconds = (incident.ended - incident.opened) / SECOND_NS
-    if seconds < 100.0:
-        return f'{seconds:.1f} s'
-    minutes = seconds / 60
-    return f'{minutes:.0f} min' if minutes < 100.0 else f'{minutes / 60:.1f} h'
+    return duration((incident.ended - incident.opened) / SECOND_NS)
 
 
 def _ways_on(incident: KeptIncident) -> List[Sequence[str]]:

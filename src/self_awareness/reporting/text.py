@@ -34,6 +34,12 @@ def duration(seconds: float) -> str:
     return f'{hours} h' + (f' {minutes:02d} min' if minutes else '')
 
 
+def delay(seconds: float) -> str:
+    """Return a short time with three significant digits, in ms or s: 60 ms, 1.25 s."""
+    is_short = seconds < 1.0
+    return f'{rounded(1000.0 * seconds, 3)} ms' if is_short else f'{rounded(seconds, 3)} s'
+
+
 def seconds_of(recordings: Iterable[Recording]) -> float:
     """Return how long recordings last together [s]."""
     return sum(each.end - each.start for each in recordings) / SECOND_NS

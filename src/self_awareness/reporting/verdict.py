@@ -1,7 +1,6 @@
 """What a model is worth, in a few lines: the verdict, who is not watched, what to do next."""
 from __future__ import annotations
 
-import math
 import os
 import shlex
 from typing import Any, Dict, List, Sequence
@@ -73,15 +72,9 @@ def _false_alarms(model: TrainedModel) -> List[str]:
     hourly = rounded(rate, 2)
     text = ('at most 1 false alarm an hour' if hourly == '1' else
             f'at most {hourly} false alarms an hour' if rate > 1.0 else
-            f'at most 1 false alarm in {_interval(3600.0 / rate)}' if rate > 0.0 else
+            f'at most 1 false alarm in {duration(3600.0 / rate)}' if rate > 0.0 else
             'no false alarm')
     return [text + ('' if has_limits(model) else ' (preliminary)')]
-
-
-def _interval(seconds: float) -> str:
-    """Return a time that is only estimated."""
-    hours = math.floor(seconds / 3600.0)
-    return f'{hours} h' if hours >= 2 else f'{math.floor(seconds / 60.0)} min'
 
 
 def _deaths(coverage: Sequence[Dict[str, Any]], noun: str) -> List[str]:

@@ -10,7 +10,7 @@ import copy
 import os
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
+from typing import Callable, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from self_awareness.calibration import heads_and_tails, limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import PAPER
 from self_awareness.parts import BagPart
-from self_awareness.recordings import RecordingEvents, check_windows, overlap
+from self_awareness.recordings import DistinctRecordings, RecordingEvents, check_windows
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import numbered_names, value_classes
 from self_awareness.training.counting import Counting
@@ -89,10 +89,7 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
             for line in counted.lines:
                 tell(line)
             for trained_on, recording in counted.recordings():
-                name = str(trained_on.part)
-                same = distinct.add(name, recording)
-                if same is not None:
-                    raise ValueError(f'{name}: the same recording as {same}; name it once')
+                distinct.add(str(trained_on.part), recording)
             total.add(counted)
             if counted.error is not None:
                 raise ValueError(counted.error)
@@ -115,22 +112,6 @@ def preliminary_limits(trained: Trained, workers: Optional[Workers] = None) -> C
     found.recordings = trained.model.recordings[-len(trained.trained_on):]
     trained.model.calibration = found
     return found
-
-
-class DistinctRecordings:
-    """Recordings that are not the same, even in part."""
-
-    def __init__(self) -> None:
-        self._known: Dict[int, List[Tuple[str, Recording]]] = {}
-
-    def add(self, name: str, recording: Recording) -> Optional[str]:
-        """Add a recording, or return the name of one that is the same, at least in part."""
-        same = self._known.setdefault(recording.fingerprint, [])
-        for other_name, other in same:
-            if overlap(other, recording):
-                return other_name
-        same.append((name, recording))
-        return None
 
 
 @dataclass(frozen=True)

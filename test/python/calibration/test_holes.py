@@ -92,14 +92,14 @@ def test_several_holes_of_one_recording_leave_parts_that_do_not_meet() -> None:
 
 def test_a_line_names_who_when_where_and_the_effect() -> None:
     hole = holes.Hole(BagPart('tuesday.bag'), GPS, Silence(212.0, 6.0), 0.3)
-    assert holes.lines([hole], []) == [
+    assert holes.lines([hole], [], True, 'mend it') == [
         'tuesday.bag: /gps (/fix) is silent for 6.0 s from 212.0 s on, 0.3 s at most in the other '
         'recordings']
 
     decides, agreed = known('/gps', 10.0), known('/gps', 0.6)
-    assert holes.lines([hole], [decides])[0].endswith(
-        '; because of that its death is found after 10 s instead of about 0.5 s')
-    assert holes.deciding([hole], [decides]) == [hole]
-    assert holes.lines([hole], [agreed])[0].endswith(
-        '; its death is found after 0.6 s all the same, as most starts agree')
-    assert holes.deciding([hole], [agreed]) == []
+    line, mend = holes.lines([hole], [decides], False, 'mend it')
+    assert line.endswith('; because of that its death is found after 10 s instead of about 0.5 s')
+    assert mend == 'if that was a fault, mend it'
+    line, = holes.lines([hole], [agreed], True, 'mend it')
+    assert line.endswith('; its death is found after 0.6 s all the same, as most starts agree')
+    assert holes.lines([hole], [agreed], False, 'mend it') == []

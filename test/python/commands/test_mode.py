@@ -131,15 +131,6 @@ def test_the_same_is_said_of_an_event_log(model: str, encoding: str, tmp_path: P
     assert of_bag and of_bag == of_log
 
 
-def test_a_log_of_the_robots_own_names_is_renamed_when_it_is_read(
-        normal: List[str], encoding: str, tmp_path: Path) -> None:
-    log = str(tmp_path / 'normal.events.bag')
-    assert convert.main([normal[0], '--encoding', encoding, '-o', log]) == 0
-    trained = conftest.trained([log], tmp_path / 'm', '--rename', '/logic/(.*)', r'/\1')
-    assert trained.encoding.mode == ('/current_state', 'data')
-    assert {kind.scope for kind in trained.event_types if kind.tells_mode} == {'/current_state'}
-
-
 def test_the_model_keeps_what_tells_the_mode(model: str, plain: str, tmp_path: Path,
                                              capsys) -> None:
     assert TrainedModel.load(model).encoding.mode == (STATE, 'data')

@@ -44,16 +44,6 @@ def found(*listed: Interval, graph: Any = (), path: str = 'x.bag') -> List[Incid
     return incidents(of, listed, 'x')
 
 
-def test_ten_alarms_of_one_cause_are_one_incident() -> None:
-    """Also those far apart, and that between them of somebody else."""
-    listed = [interval(100.0 * i, 100.0 * i + 3, [suspect('/a', silence=Silence(
-        100.0 * i - 1, 100.0 * i + i))]) for i in range(1, 11)]
-    incident, other = found(*listed, interval(2000.0, 2001.0, [suspect('/b')]))
-    assert len(incident.intervals) == 10 and incident.standing == pytest.approx(30.0)
-    assert incident.cause == '/a' and other.cause == '/b'
-    assert incident.key != other.key
-
-
 def test_a_second_death_in_an_alarm_has_a_sentence_of_its_own() -> None:
     graph = {('/a', '/t', '/victim')}
     incident, = found(interval(29.0, 90.0, [
@@ -63,15 +53,6 @@ def test_a_second_death_in_an_alarm_has_a_sentence_of_its_own() -> None:
         suspect('/late', 'answers late')]), graph=graph)
     assert incident.headline.startswith('/a (/t) ')
     assert incident.further == ['/b (/t) fell silent at 50.0 s, and came back at 70.0 s.']
-
-
-def test_a_suspicion_is_of_the_incident_of_its_alarm() -> None:
-    """It may have blamed a victim first."""
-    incident, = found(interval(28.5, 28.7, [suspect('/b'), suspect('/a')], SUSPICION),
-                      interval(28.7, 40.0, [suspect('/a'), suspect('/b')]),
-                      interval(41.0, 41.1, [suspect('/b'), suspect('/quiet')], SUSPICION))
-    assert incident.cause == '/a' and incident.others == ['/b']
-    assert incident.main.start == 28.7 and len(incident.intervals) == 3
 
 
 def test_what_stood_longest_comes_first() -> None:
@@ -215,20 +196,6 @@ def test_a_recording_of_several_pauses(evidence_model: str, make_bag: Callable[.
     assert (laser['from_s'], laser['back_s']) == pytest.approx((30.0, 38.0), abs=0.1)
 
 
-def test_who_works_at_half_its_rate_did_not_fall_silent(evidence_model: str, tmp_path: Path,
-                                                        make_bag: Callable[..., str]) -> None:
-    messages = list(jittery_robot(3000.0, 40.0, 3))
-    laser = [m for m in messages if m[1] == '/laser' and m[0] > 3012.0]
-    followers = [m for m in messages if m[1] == '/slam' and m[0] > 3012.0]
-    halved = set(laser[::2]) | set(followers[::2])
-    of = judged(with_graph(evidence_model, tmp_path / 'm'), make_bag('half.bag', [
-        m for m in messages if m not in halved]))
-    first = incidents(of, intervals(of), 'x')[0]
-    assert re.match(r'/laser \(/scan\) sends too seldom from 1[12]\.\d s', first.headline)
-    named = first.main.named[0]
-    assert named.of.reason.kind == 'slow' and 'silent' not in named.of.reason.words
-
-
 def write_senders(path: Path, messages: List[Message]) -> str:
     """Write a bag in which several nodes publish on a topic, as Python's rosbag does not."""
     connections: Dict[Tuple[str, str], Any] = {}
@@ -254,11 +221,3 @@ def test_a_flood_of_strangers_does_not_hide_who_died(evidence_model: str,
     assert alarm.cause == '/laser'
     assert alarm.headline == ('/laser (/scan) stopped sending at 12.0 s, 18.0 s before the '
                               'recording ended.')
-
-
-def test_strangers_are_together_with_strangers_only() -> None:
-    new = [suspect(name, 'is new', kind='stranger') for name in ('/a', '/b')]
-    incident, = found(interval(10.0, 20.0, [*new, suspect('/c', silence=Silence(12.0, None))]),
-                      graph=[('/x', '/t', '/y')])
-    assert incident.together == ['/b']
-    assert incident.headline.startswith('/a and /b are new: training never heard them')

@@ -10,11 +10,11 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness.reporting.report.against import Counts, Evidence, Histogram, seconds
+from self_awareness.reporting.report.against import Counts, Evidence, Histogram
 from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.intervals import ALARM, Interval
 from self_awareness.reporting.report.timeline import SHOWN_LIMITS, Lanes, Timeline
-from self_awareness.reporting.text import percent
+from self_awareness.reporting.text import delay, percent
 
 Figure = Dict[str, Any]
 """Traces and layout of a plot (`data`, `layout`)."""
@@ -76,7 +76,7 @@ def _histogram(shown: Histogram) -> Figure:
         'type': 'bar', 'x': _rounded(edges[:-1]), 'width': _rounded(np.diff(edges)), 'offset': 0,
         'y': [100.0 * count / total for count in shown.counts],
         'marker': {'color': BLUE}, 'hoverinfo': 'text',
-        'hovertext': [f'{seconds(low)} to {seconds(high)}: {count} of {total}'
+        'hovertext': [f'{delay(low)} to {delay(high)}: {count} of {total}'
                       for low, high, count in zip(shown.edges, shown.edges[1:], shown.counts)],
     }]
     shapes: List[Figure] = []

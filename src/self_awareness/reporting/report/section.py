@@ -19,7 +19,7 @@ from self_awareness.reporting.report.neighbours import Neighbourhood, neighbourh
 from self_awareness.reporting.report.next_steps import NextSteps, next_steps
 from self_awareness.reporting.report.timeline import Timeline, timeline
 from self_awareness.reporting.report.unjudged import Unjudged, unjudged
-from self_awareness.reporting.text import number_of, percent, seconds_of
+from self_awareness.reporting.text import duration, number_of, percent, seconds_of
 from self_awareness.stamps import SECOND_NS, moment
 
 QUIET, SUSPICIOUS, ALARMED, NOT_JUDGED = 'quiet', 'suspicious', 'alarmed', 'not judged'
@@ -144,7 +144,7 @@ def _facts(judged: Judged) -> List[Tuple[str, str]]:
     recording, by = judged.recording, judged.by
     types = int(np.count_nonzero(np.bincount(recording.ids)))
     facts = [('recorded', f'{moment(recording.recording.start)}, '
-                          f'{clock(seconds_of([recording.recording]))}'),
+                          f'{duration(seconds_of([recording.recording]))}'),
              ('events', f'{len(recording.stamps):,} of {types:,} event types'),
              ('windows', f'{len(judged.verdicts.start):,} of {by.trained.window / SECOND_NS:g} s'),
              ('model', by.model_name),
@@ -199,7 +199,7 @@ def _when(worst: Incident) -> str:
     main = worst.main
     end = 'cleared' if main.cleared else 'stood until the end of the recording'
     times = len(worst.alarms)
-    often = f'; {times} {worst.level}s in all, for {clock(worst.standing)}' if times > 1 else ''
+    often = f'; {times} {worst.level}s in all, for {duration(worst.standing)}' if times > 1 else ''
     return (f'{worst.level} from {clock(main.start)} to {clock(main.end)} ({end}); '
             f'{main.moment}{often}')
 
