@@ -39,8 +39,7 @@ class Paper:
         learner = Learner(evidence=False, paper=True)
         for recording in recordings:
             learner.count(recording.event_types, recording.stamps, recording.ids,
-                          recording.fingerprint, robot=recording.robot,
-                          attributes=recording.attributes)
+                          recording.fingerprint, attributes=recording.attributes)
         trained = learner.model(watch=False)
         self._types = trained.event_types
         self._model = PaperModel(trained)
@@ -89,8 +88,7 @@ class Evidence:
         learner = Learner(self._tuning, self._graph)
         for recording in recordings:
             learner.add(recording.event_types, recording.stamps, recording.ids,
-                        recording.fingerprint, robot=recording.robot,
-                        attributes=recording.attributes)
+                        recording.fingerprint, attributes=recording.attributes)
         self._trained = learner.learn()
         for recording in recordings:
             self._trained.add_subscriptions(_lasting(recording))
@@ -101,8 +99,8 @@ class Evidence:
         encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
         self._trained.calibration, = limits.find(
             self._trained, DetectorParameters().settle_time, [self._budget],
-            [HeldOut(recording.stamps, recording.ids, robot=recording.robot,
-                     attributes=recording.attributes, waiting=recording.waiting)
+            [HeldOut(recording.stamps, recording.ids, attributes=recording.attributes,
+                     waiting=recording.waiting)
              for recording in encoded])
 
     def judge(self, recording: WindowedEvents) -> Judged:

@@ -13,7 +13,7 @@ from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
 from self_awareness_evaluation import experiment, options, outages, pages, simulated, tunings
 from self_awareness_evaluation.experiment import Unit
-from self_awareness_evaluation.families.kinds import DEFAULT, FAMILIES
+from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import AFTER_DEATH_S, KINDS, check_hours, recorded
 from self_awareness_evaluation.pages import FULL, Section
 from self_awareness_evaluation.records import FAMILIES as OF_FAMILIES
@@ -22,7 +22,6 @@ from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.sections import ablation, families, own_robot
 from self_awareness_evaluation.sections import recordings as real
 from self_awareness_evaluation.variants import EVIDENCE, SYSTEMS
-from self_awareness_evaluation.variants import KINDS as CHANGES
 from self_awareness_evaluation.variants import Variant, one_by_one, side_by_side
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import load_scenario
@@ -57,7 +56,7 @@ def add(parts: Any) -> None:
         'families', help='simulated robots as different as possible, drawn by seed',
         description='Every system learns from few starts of each robot and from many, watches '
         'hours of normal operation in others, and judges every component\'s faults.')
-    _add_robots(parser, _families, DEFAULT, '--robots', 3, 2.0)
+    _add_robots(parser, _families, tuple(FAMILIES), '--robots', 3, 2.0)
     options.add(parser, '--budgets', options.budget, [BUDGET], 'B', 'false alarms an hour that '
                 'limits are made for, in turn; faults are judged with the first')
     _add_systems(parser, _OF_FAMILIES)
@@ -91,9 +90,6 @@ def add(parts: Any) -> None:
     parser.add_argument('--numbers', nargs='*', metavar='NAME',
                         help='change these in turn, none if no name follows; `info --tuning` '
                         'lists them (default: all)')
-    parser.add_argument('--kinds', nargs='+', choices=CHANGES, default=CHANGES, metavar='KIND',
-                        help=f'changes of these only: {", ".join(CHANGES)}, where a rule is '
-                        'switched off by a number (default: all)')
 
 
 def _add_common(parser: argparse.ArgumentParser,
@@ -159,7 +155,7 @@ def _recordings(arguments: argparse.Namespace, command: str) -> None:
 
 
 def _ablation(arguments: argparse.Namespace, command: str) -> None:
-    variants = one_by_one(arguments.channels, arguments.numbers, arguments.kinds)
+    variants = one_by_one(arguments.channels, arguments.numbers)
     check_hours(arguments.families, arguments.hours)
     amount = arguments.hours, KINDS, arguments.faults, _AFTER_DEATH_S
     own_faults = tuple(kind for kind in simulated.default_faults(load_scenario())

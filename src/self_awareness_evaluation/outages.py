@@ -20,7 +20,7 @@ from self_awareness.training.many_bags import Counting, Trained
 from self_awareness_evaluation import tunings
 from self_awareness_evaluation.detectors import Paper, judged_of
 from self_awareness_evaluation.experiment import Unit
-from self_awareness_evaluation.peers import LearnedFrequencyMonitor
+from self_awareness_evaluation.peers import FrequencyMonitor
 from self_awareness_evaluation.records import NORMAL, WindowedEvents
 from self_awareness_evaluation.rows import HOUR_S, Row, Subject, at_end
 from self_awareness_evaluation.systems import System, SystemAlarm
@@ -135,7 +135,7 @@ def _paper(case: Case, data: Path, _: Tuning) -> JudgedCase:
 
 
 def _frequency_learned(case: Case, data: Path, _: Tuning) -> JudgedCase:
-    system = LearnedFrequencyMonitor(RATE)
+    system = FrequencyMonitor(RATE)
     return _learned(system, case, data)[0]._replace(watched=len(system.bounds))
 
 

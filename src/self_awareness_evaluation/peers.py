@@ -3,9 +3,9 @@
 Each watches every topic or event type against bounds of its own. The score of a window is the
 largest deviation from these at its end, negated: 0 within them.
 
-Frequency monitors do as diagnostic_updater's FrequencyStatus, which looks once a second: the
-messages of every periodic topic are counted over the last 5 s; the score is -0.1 where a topic has
-10 % less than its minimum, or 10 % more than its maximum.
+The frequency monitor does as diagnostic_updater's FrequencyStatus: the messages of every periodic
+topic are counted over the last 5 s; the score is -0.1 where a topic has 10 % less than its
+minimum, or 10 % more than its maximum.
 
 The monitor of gaps is as somebody writes it in an afternoon: nothing in it is chosen by hand. An
 event type is beyond its bounds when it has been silent for LONGER times the longest gap ever seen,
@@ -24,8 +24,6 @@ from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.records import WindowedEvents, stamps_by
 from self_awareness_evaluation.systems import (FALSE_POSITIVE_RATE, Judged, common_threshold,
                                                persistent, settling)
-
-TOLERANCE = 0.1  # default of FrequencyStatusParam
 
 SPAN = 5 * SECOND_NS
 """Length of the time over which messages are counted [ns]: 5 updates, once a second."""
@@ -120,14 +118,19 @@ class Bounds(NamedTuple):
 
 
 class FrequencyMonitor(Peer):
-    """FrequencyStatus as a developer sets it up: minimum and maximum are the nominal frequency.
+    """FrequencyStatus; minimum and maximum are those of the messages in SPAN of the training.
 
-    The nominal frequency is the mean of the training recordings. Topics with fewer than
-    2 / TOLERANCE messages in SPAN are left out: by jitter alone, a message more or less falls into
-    it.
+    They are wider by one message, which may fall to either side of the end of SPAN by its phase
+    alone: without that, the slowest topics decide on the threshold, and the fast ones are found a
+    second later. Periodic topics of any frequency are watched, if the fewest are 2 or more.
+
+    Args:
+        rate: share of the normal windows of the calibration that are below the threshold.
     """
 
-    threshold = -TOLERANCE
+    def __init__(self, rate: float = FALSE_POSITIVE_RATE) -> None:
+        super().__init__()
+        self._rate = rate
 
     @staticmethod
     def key(event_type: EventType) -> str:
@@ -148,33 +151,9 @@ class FrequencyMonitor(Peer):
             stamps = [of_recording.get(topic, _NEVER) for of_recording in by_topic]
             gaps = np.concatenate([np.diff(part) for part in stamps])
             if len(gaps) >= _FEWEST_GAPS and gaps.std() <= _PERIODIC * gaps.mean():
-                bounds = self._bounds_of(recordings, stamps, gaps)
+                bounds = self._bounds_of(recordings, stamps)
                 if bounds.fewest > 0:
                     self.bounds[topic] = bounds
-
-    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Do nothing: the tolerance is given."""
-
-    def _bounds_of(self, recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray],
-                   gaps: np.ndarray) -> Bounds:
-        nominal = SPAN / gaps.mean()
-        return Bounds(nominal, nominal) if nominal >= 2 / TOLERANCE else Bounds(0, 0)
-
-
-class LearnedFrequencyMonitor(FrequencyMonitor):
-    """The bounds are the fewest and the most messages in SPAN of the training recordings.
-
-    They are wider by one message, which may fall to either side of the end of SPAN by its phase
-    alone: without that, the slowest topics decide on the threshold, and the fast ones are found a
-    second later. Periodic topics of any frequency are watched, if the fewest are 2 or more.
-
-    Args:
-        rate: share of the normal windows of the calibration that are below the threshold.
-    """
-
-    def __init__(self, rate: float = FALSE_POSITIVE_RATE) -> None:
-        super().__init__()
-        self._rate = rate
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose the threshold by the common rule."""
@@ -182,8 +161,8 @@ class LearnedFrequencyMonitor(FrequencyMonitor):
             [self.scores(recording)[~settling(recording)] for recording in recordings],
             self._rate)
 
-    def _bounds_of(self, recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray],
-                   gaps: np.ndarray) -> Bounds:
+    @staticmethod
+    def _bounds_of(recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray]) -> Bounds:
         found = []
         for recording, part in zip(recordings, stamps):
             ends = recording.starts() + DEFAULT_WINDOW

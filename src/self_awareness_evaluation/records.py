@@ -32,7 +32,6 @@ class WindowedEvents:
     stamps: np.ndarray  # int64 [ns], at least one
     ids: np.ndarray  # uint32, one for each stamp
     end: int  # the recording lasts until then [ns], exclusive, whether something comes or not
-    robot: str = ''  # its name; empty: there is one only
     # Of the messages, uint32, one for each stamp; None: not known.
     attributes: Optional[np.ndarray] = None
     # What there was from a time [ns] on, in the order of time; empty: not known.

@@ -48,8 +48,6 @@ class Row:
     standing_hours: float = 0.0  # for how long an alarm stood in it [h]
     warnings: int = 0  # times that a suspicion or an alarm began in it
     evidence: Tuple[str, ...] = ()  # what raised each alarm in it, in the system's words
-    # The same of what became no alarm, of a record without a fault.
-    suspicions: Tuple[str, ...] = ()
     # False alarms an hour that the calibration told; None: it did not say.
     expected: Optional[float] = None
     # How many components the system watches, of a record without a fault; of one with a fault, how
@@ -94,8 +92,7 @@ class Row:
 def normal_row(subject: Subject, judged: Judged, expected: Optional[float] = None,
                watched: Optional[int] = None, components: Optional[int] = None) -> Row:
     """Measure a record of normal operation."""
-    row = Row(subject, NORMAL, expected=expected, watched=watched, components=components,
-              suspicions=tuple(each.evidence for each in judged.suspicions))
+    row = Row(subject, NORMAL, expected=expected, watched=watched, components=components)
     return _quiet(row, judged, np.ones(len(judged.start), dtype=bool), judged.alarms)
 
 

@@ -9,7 +9,7 @@ from self_awareness import Tuning, TuningNumber
 from self_awareness.calibration import limits
 from self_awareness_evaluation import tunings
 from self_awareness_evaluation.detectors import Evidence, Paper
-from self_awareness_evaluation.peers import FrequencyMonitor, GapMonitor, LearnedFrequencyMonitor
+from self_awareness_evaluation.peers import FrequencyMonitor, GapMonitor
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.systems import System
 
@@ -17,15 +17,9 @@ EVIDENCE = ('evidence', 'evidence_no_graph')
 """The evidence detector, with the graph of the robot and without."""
 
 _OTHERS: Dict[str, Callable[[], System]] = {
-    'paper': Paper, 'gaps': GapMonitor, 'frequency': FrequencyMonitor,
-    'frequency_learned': LearnedFrequencyMonitor}
+    'paper': Paper, 'gaps': GapMonitor, 'frequency_learned': FrequencyMonitor}
 
 SYSTEMS = (*EVIDENCE, *_OTHERS)  # the names of all systems
-
-CHANNEL, RULE, NUMBER = 'channel', 'rule', 'number'
-"""Kinds of changes: one is left out, one is switched off, one is halved or doubled."""
-
-KINDS = (CHANNEL, RULE, NUMBER)
 
 _HALF, _DOUBLE = 0.5, 2.0
 
@@ -40,7 +34,7 @@ class Variant:
     # False alarms an hour that limits are made for; None: the usual ones, or the system has none.
     budget: Optional[float] = None
     faults: bool = True  # whether it judges records with a fault, too
-    kind: str = ''  # of the change, one of KINDS; empty: there is none, or it was asked for
+    is_number: bool = False  # whether a number is halved or doubled, one by one
 
     def make(self, graph: AbstractSet[Tuple[str, str, str]]) -> System:
         """Return the system, new; graph: of the robot."""
@@ -65,8 +59,8 @@ def side_by_side(systems: Sequence[str], learnings: Sequence[Optional[Learning]]
     return found
 
 
-def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Sequence[str]] = None,
-               kinds: Sequence[str] = KINDS) -> List[Variant]:
+def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Sequence[str]] = None
+               ) -> List[Variant]:
     """Return the method as it is, and with one thing changed after the other: channels left out,
     numbers switched off, halved and doubled; None: all of them.
 
@@ -78,15 +72,14 @@ def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Seque
     for name in numbers or ():
         Tuning().get(name)
     known = [number for number in Tuning.numbers() if numbers is None or number.name in numbers]
-    changes = [(CHANNEL, f'{tunings.WITHOUT}{name}') for name in
+    changes = [f'{tunings.WITHOUT}{name}' for name in
                (Tuning.channels() if channels is None else channels)]
-    changes += [(RULE, tunings.told(number.name, number.off)) for number in known
+    changes += [tunings.told(number.name, number.off) for number in known
                 if number.off is not None and number.off != number.default]
-    changes += [(NUMBER, tunings.told(number.name, value)) for number in known
-                for value in _values(number)]
     method = EVIDENCE[0]
-    return [Variant(method), *(Variant(method, change=change, kind=kind)
-                               for kind, change in changes if kind in kinds)]
+    return [Variant(method), *(Variant(method, change=change) for change in changes),
+            *(Variant(method, change=tunings.told(number.name, value), is_number=True)
+              for number in known for value in _values(number))]
 
 
 def _values(number: TuningNumber) -> Iterator[float]:

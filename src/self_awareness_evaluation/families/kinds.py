@@ -22,9 +22,6 @@ _RESULT = 'move_base_msgs/MoveBaseActionResult[status.status='
 _FAILS = 1.0 / 12.0  # of the goals, in normal operation
 _HOLE_S = 6.0
 _HEAD_OR_TAIL_S = (6.0, 20.0)
-_CLOCKS_PPM = 50.0
-_ARM_HZ = 50.0
-_WATCHED = 1000  # the robot of a fleet that is watched
 
 
 def _timers(timing: Timing = Timing(), conditions: Conditions = Conditions()
@@ -219,18 +216,6 @@ def _of_one_make(draft: Draft, number: int) -> None:
     draft.add(f'own{number}', 'data', _TEMPERATURE, Timer(1.0 / float(own.choice(RATES_HZ))))
 
 
-def _of_fleet(draft: Draft, number: int = _WATCHED) -> None:
-    add_timers_and_chains(draft)
-    if number % 2 == 0:
-        draft.add_chain('gripper', draft.add_timer('arm', _ARM_HZ), _ARM_HZ, 2)
-    own = np.random.default_rng((draft.seed, number))
-    draft.add(f'sensor{number}', 'data', _TEMPERATURE, Timer(1.0 / float(own.choice(RATES_HZ))))
-    for index, output in enumerate(draft.outputs):
-        ppm = float(own.uniform(-_CLOCKS_PPM, _CLOCKS_PPM))
-        if isinstance(output.emission, Timer):
-            draft.outputs[index] = replace(output, emission=replace(output.emission, ppm=ppm))
-
-
 def _everyday(draft: Draft) -> None:
     rng = draft.rng
     add_timers_and_chains(draft, 0)
@@ -287,7 +272,6 @@ class Family:
     # Draws one of several robots of a make, by a number: each recording to learn from is of
     # another one, and all that is watched of one more; None: there is one robot.
     of_make: Optional[Callable[[Draft, int], None]] = None
-    names_robots: bool = False  # the recordings to learn from say of which robot they are
 
     def robot(self, seed: int, number: Optional[int] = None) -> Robot:
         """Return the robot of a seed, at least 0; of a make, that of a number if one is given."""
@@ -301,7 +285,7 @@ class Family:
 
 _STALLS = Conditions(stalls_an_hour=6.0)
 
-FAMILIES: Dict[str, Family] = {  # all families by name; more are added below
+FAMILIES: Dict[str, Family] = {  # all families by name, each with something of its own
     'timers': Family('exact timers of 0.5 to 100 Hz, seven chains of answers', _timers()),
     'timers_drift': Family('the same, clocks that differ by up to 50 ppm',
                            _timers(Timing(ppm=50.0))),
@@ -350,12 +334,3 @@ FAMILIES: Dict[str, Family] = {  # all families by name; more are added below
     'one_make': Family('timers; robots of one make with a node of their own each: learned from '
                        'some, watching another', _timers(), of_make=_of_one_make),
 }
-DEFAULT = tuple(FAMILIES)
-"""Those that are evaluated if no others are asked for: each with something of its own."""
-
-FAMILIES['fleet'] = Family(
-    'robots of one make, with clocks and a sensor of their own, every second one with an arm: '
-    'learned from some that are told apart, watching another', _of_fleet, of_make=_of_fleet,
-    names_robots=True)
-FAMILIES['fleet_own'] = Family('the robot of `fleet` that is watched, learned from itself',
-                               _of_fleet)

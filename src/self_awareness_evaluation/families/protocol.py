@@ -189,12 +189,9 @@ class Records:
         if family.of_make is not None:  # who is watched is none that is learned from
             robot = family.robot(robot.seed, turn if section.is_learned else _WATCHED.first)
         if family.one_start if section.is_learned else family.watched_start:
-            recording = robot.start(_ONE_START, seconds, fault,
-                                    section.from_s + number * section.every_s)
-        else:
-            recording = robot.start(turn, seconds, fault)
-        is_told = family.names_robots and section.is_learned
-        return replace(recording, robot=f'r{turn}') if is_told else recording
+            return robot.start(_ONE_START, seconds, fault,
+                               section.from_s + number * section.every_s)
+        return robot.start(turn, seconds, fault)
 
 
 def recorded(family: str, seed: int, hours: float, kinds: Tuple[str, ...] = KINDS,

@@ -66,17 +66,9 @@ def _add_minutes(parser: argparse.ArgumentParser, name: str, default: float, tol
 
 def _add_session(parser: argparse.ArgumentParser, name: str, learning: Learning,
                  folder: str = 'docs/evaluation', page: str = RESULTS) -> None:
-    """Add what is recorded to learn from, and where all goes: the page lies in the folder."""
-    parser.set_defaults(work=_run, name=name, page=page)
+    """Add where all goes: the page lies in the folder; learning: what is learned from."""
+    parser.set_defaults(work=_run, name=name, page=page, learning=learning)
     options.add_output(parser, f'the section {name} of {page} and the CSV file', folder)
-    options.add(parser, '--starts', cli.count, learning.starts, 'N',
-                'starts of the robot to learn from')
-    options.add(parser, '--training', options.recorded_s, learning.training_s, 'S',
-                'length of the recording of each of them [s]')
-    options.add(parser, '--calibrations', cli.count, learning.calibrations, 'N',
-                'further starts that the limits are found by')
-    options.add(parser, '--calibration', options.recorded_s, learning.calibration_s, 'S',
-                'length of the recording of each of them [s]')
     parser.add_argument('--recordings', type=Path, metavar='DIR',
                         help='folder to keep recordings, model and logs in; recordings of normal '
                         'operation that it holds already are used again (default: all are removed '
@@ -105,7 +97,7 @@ def _run(arguments: argparse.Namespace, command: str) -> None:
         signal.signal(number, signal.default_int_handler)
     path.parent.mkdir(parents=True, exist_ok=True)
     with _folder(arguments.recordings) as folder, own_master(folder, 'evaluate') as processes:
-        session.run(planned(arguments, _learning(arguments), folder, processes), folder,
+        session.run(planned(arguments, arguments.learning, folder, processes), folder,
                     processes, keep)
     print(f'written: {path}')
     write(arguments, command, rows, *told(rows))
@@ -121,7 +113,7 @@ def write(arguments: argparse.Namespace, command: str, rows: Sequence[Row], line
     """
     path = arguments.output / arguments.page
     loads = [row.load for row in rows if row.load]
-    learning = _learning(arguments)
+    learning = arguments.learning
     write_section(path, arguments.name, '\n'.join([
         f'{written_by(command, time.strftime("%Y-%m-%d", time.gmtime()))} Learned from '
         f'{learning.starts} x {learning.training_s:g} s, limits by {learning.calibrations} x '
@@ -132,11 +124,6 @@ def write(arguments: argparse.Namespace, command: str, rows: Sequence[Row], line
     print(f'written: {path}')
     if wrong:
         raise ValueError('; '.join(wrong))
-
-
-def _learning(arguments: argparse.Namespace) -> Learning:
-    return Learning(arguments.starts, arguments.training, arguments.calibrations,
-                    arguments.calibration)
 
 
 @contextlib.contextmanager

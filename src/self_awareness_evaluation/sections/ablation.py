@@ -12,7 +12,7 @@ from self_awareness_evaluation.outages import OUTAGE
 from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.pages import RESEARCH, Section
 from self_awareness_evaluation.tables import NONE, Cell, cells, table
-from self_awareness_evaluation.variants import NUMBER, Variant
+from self_awareness_evaluation.variants import Variant
 
 NAME = 'ablation'
 
@@ -33,8 +33,8 @@ def section(rows: Sequence[Row], variants: Sequence[Variant]) -> Section:
         [variant.change or 'as it is', *(
             f'**{of_variant[title].text}**' if of_variant[title].differs(default[title])
             else of_variant[title].text for title in default)]
-        for variant, of_variant in found.items() if variant.kind != NUMBER])]
-    if any(variant.kind == NUMBER for variant in variants):
+        for variant, of_variant in found.items() if not variant.is_number])]
+    if any(variant.is_number for variant in variants):
         lines += ['', '### Numbers', '', *_numbers_table(found)]
     refused = {f'- {row.subject.change or "as it is"}: {row.subject.robot}: {row.refused}'
                for row in rows if row.refused}
@@ -48,7 +48,7 @@ def _numbers_table(found: Dict[Variant, Dict[str, Cell]]) -> List[str]:
     default = next(iter(found.values()))
     changed: Dict[str, List[Tuple[float, str]]] = {}
     for variant, of_variant in found.items():
-        if variant.kind == NUMBER:
+        if variant.is_number:
             name, _, value = variant.change.partition('=')
             changed.setdefault(name, []).append((float(value), ', '.join(
                 f'{title} {of_variant[title].text}' for title in default

@@ -101,7 +101,7 @@ def test_an_ablation_judges_each_robot_by_every_variant(tmp_path: Path,
     ['simulated', '--systems', 'oracle'], ['families', '--families', 'cars'],
     ['families', '--starts', '0'], ['families', '--starts', '17'], ['families', '--hours', '0'],
     ['families', '--budgets', '0'], ['families', '--faults', 'rust'],
-    ['families', '--seed', '0'], ['ablation', '--kinds', 'luck'],
+    ['families', '--seed', '0'],
     ['families', '--families', 'timers', 'stalls', '--hours', '20']])
 def test_wrong_arguments_are_refused(wrong: List[str], tmp_path: Path, capsys: Any) -> None:
     assert evaluate.main([wrong[0], '-o', str(tmp_path / 'out'), *wrong[1:]]) in (1, 2)
@@ -148,7 +148,7 @@ def test_wrong_changes_are_refused(wrong: List[str], told: List[str], tmp_path: 
 
 @pytest.mark.parametrize('part', ['simulated', 'families'])
 def test_a_change_that_no_system_has_is_refused(part: str, tmp_path: Path, capsys: Any) -> None:
-    assert evaluate.main([part, '--systems', 'frequency', '--without', CHANNELS[0],
+    assert evaluate.main([part, '--systems', 'gaps', '--without', CHANNELS[0],
                           '-o', str(tmp_path / 'out')]) == 1
     assert '--systems' in capsys.readouterr().err
     assert not (tmp_path / 'out').exists()

@@ -17,8 +17,7 @@ from self_awareness_evaluation.families.protocol import Records, recorded
 from self_awareness_evaluation.records import FAMILIES, NORMAL, FaultRecord, Learning, Robot
 from self_awareness_evaluation.row_files import KeptRows
 from self_awareness_evaluation.rows import Row
-from self_awareness_evaluation.variants import (CHANNEL, NUMBER, RULE, Variant, one_by_one,
-                                                side_by_side)
+from self_awareness_evaluation.variants import Variant, one_by_one, side_by_side
 
 from evaluation_robot import START, robot
 
@@ -34,13 +33,12 @@ FIRST = next(number for number in Tuning.numbers() if number.off is None
 
 def test_the_method_as_it_is_comes_first_then_channels_rules_and_numbers() -> None:
     found = one_by_one()
-    kinds = [variant.kind for variant in found]
-    assert kinds == sorted(kinds, key=('', CHANNEL, RULE, NUMBER).index)
     assert found[0] == Variant('evidence')
-    assert [variant.change for variant in found if variant.kind == CHANNEL] \
-        == [f'without {name}' for name in Tuning.channels()]
-    assert ([variant.change.partition('=')[0] for variant in found if variant.kind == RULE]
-            == [each.name for each in Tuning.numbers() if each.off is not None])
+    assert [variant.change.partition('=')[0] for variant in found if not variant.is_number] == [
+        '', *(f'without {name}' for name in Tuning.channels()),
+        *(each.name for each in Tuning.numbers() if each.off is not None)]
+    assert [variant.is_number for variant in found] == sorted(
+        variant.is_number for variant in found)
     methods = [tunings.tuning_of(variant.change) for variant in found]
     assert methods[0] == Tuning() and all(method != Tuning() for method in methods[1:])
     assert len({variant.change for variant in found}) == len(found)
@@ -49,7 +47,7 @@ def test_the_method_as_it_is_comes_first_then_channels_rules_and_numbers() -> No
 def test_numbers_are_halved_and_doubled_within_their_range() -> None:
     for each in Tuning.numbers():
         values = [float(variant.change.partition('=')[2])
-                  for variant in one_by_one([], [each.name], [NUMBER])[1:]]
+                  for variant in one_by_one([], [each.name]) if variant.is_number]
         assert len(values) <= 2 and each.default not in values
         assert all(each.least <= value <= each.most for value in values)
         if not each.unit and float(each.default).is_integer():
@@ -60,7 +58,6 @@ def test_only_what_is_asked_for_is_changed() -> None:
     assert [variant.change for variant in one_by_one([SOME], [FIRST.name])] == [
         '', f'without {SOME}', *(f'{FIRST.name}={factor * FIRST.default:g}'
                                  for factor in (0.5, 2.0))]
-    assert {variant.kind for variant in one_by_one(kinds=[RULE])} == {'', RULE}
     with pytest.raises(ValueError, match='smell'):
         one_by_one(['smell'], [])
     with pytest.raises(ValueError, match='luck'):

@@ -13,15 +13,13 @@ from self_awareness_evaluation.families.faults import (CRASH, FAILS, FLOOD, HALF
                                                        LOSSES, MISSES, NOTHING, OLD, OTHER,
                                                        RESTART, SILENT, SLOWER, STALL, STARVED,
                                                        STOP, Fault)
-from self_awareness_evaluation.families.kinds import DEFAULT, FAMILIES
+from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import (DEATH, NEVER, RESTARTS_IN_S, SELDOM,
                                                          Records)
 from self_awareness_evaluation.families.robot import WARNING, Output, Robot
 from self_awareness_evaluation.records import FaultRecord, Learning, WindowedEvents
 
 POINTS = 'sensor_msgs/PointCloud2'
-
-KINDS = (*DEFAULT, 'fleet')
 
 
 def draw(family: str, seed: int) -> Robot:
@@ -55,7 +53,7 @@ def same(first: WindowedEvents, second: WindowedEvents) -> bool:
             and np.array_equal(first.ids, second.ids))
 
 
-@pytest.mark.parametrize('name', KINDS)
+@pytest.mark.parametrize('name', FAMILIES)
 def test_every_family_can_be_repeated_and_is_recorded_in_order(name: str) -> None:
     robot = draw(name, 3)
     recording = robot.start(5, 60.0, begin_s=100.0)
@@ -152,7 +150,7 @@ def of_fault(kind: str, source: str) -> Dict[str, np.ndarray]:
 
 @pytest.mark.parametrize('kind', [CRASH, HALF_RATE, LATE, MISSES, STARVED, SILENT])
 @pytest.mark.parametrize('name', ['timers', 'stalled_loops', 'wireless', 'bursty', 'rate_modes',
-                                  'servers', 'fleet'])
+                                  'servers'])
 def test_nothing_changes_before_the_onset(name: str, kind: str) -> None:
     robot = draw(name, 2)
     source = '' if kind in (STARVED, SILENT) else robot.answering[0]
@@ -436,21 +434,6 @@ def test_robots_of_one_make_are_the_same_but_for_a_node_of_their_own() -> None:
     assert len(set().union(*own[:3])) == 3, 'each is another robot'
     assert own[3] == own[4] and not own[3] & set().union(*own[:3])
     assert {kind.source for kind in learned[0].event_types} >= set(records.robot.regular)
-
-
-def test_robots_of_a_fleet_say_which_one_they_are() -> None:
-    records, own = Records('fleet', 3), Records('fleet_own', 3)
-    learning = Learning(2, 60.0, 1, 60.0)
-    learned = [*records.training(learning), *records.calibration(learning)]
-    assert [recording.robot for recording in learned] == ['r0', 'r1', 'r100']
-    names = [{kind.source for kind in recording.event_types} for recording in learned]
-    assert names[0] - names[1] == {'/arm', '/gripper_1', '/gripper_2', '/sensor0'}
-    watched, = records.watched(60.0 / 3600.0)
-    assert watched.robot == '' and same(watched, *own.watched(60.0 / 3600.0))
-    clocks = {output.emission.ppm for output in records.robot.outputs
-              if isinstance(output.emission, Timer)}
-    assert len(clocks) > 10
-    assert [recording.robot for recording in own.training(learning)] == ['', '']
 
 
 @pytest.mark.parametrize('family,learned_in,watched_in',

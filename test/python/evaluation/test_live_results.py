@@ -149,12 +149,12 @@ def test_a_recovery_says_what_is_wrong() -> None:
 
 
 def test_a_section_is_written_and_what_is_wrong_is_an_error(tmp_path: Path) -> None:
-    arguments = evaluate.parser().parse_args(['soak', '-o', str(tmp_path), '--starts', '3'])
+    arguments = evaluate.parser().parse_args(['soak', '-o', str(tmp_path)])
     arguments.page = 'page.md'
     rows = [replace(normal(0.0), load=1.5), replace(CRASH, load=2.5)]
     page = tmp_path / arguments.page
     command.write(arguments, 'the command', rows, ['| table |'], [])
-    assert re.search('<!-- soak -->\nWritten by `the command` on .* Learned from 3 x 90 s, limits '
+    assert re.search('<!-- soak -->\nWritten by `the command` on .* Learned from 4 x 90 s, limits '
                      r'by 4 x 120 s, .* load average 1\.5 to 2\.5, [^\n]*\n\n\| table \|\n',
                      page.read_text())
     page.write_text('# Before\n\n<!-- soak -->\nold\n<!-- /soak -->\nafter\n')

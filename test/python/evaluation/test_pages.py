@@ -18,7 +18,7 @@ from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, REAL
 from self_awareness_evaluation.rows import Row, Subject
 from self_awareness_evaluation.sections import ablation, families, own_robot, recordings
 from self_awareness_evaluation.tables import cells
-from self_awareness_evaluation.variants import CHANNEL, NUMBER, RULE, Variant
+from self_awareness_evaluation.variants import Variant
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / 'docs'
@@ -187,14 +187,14 @@ def test_the_ablation_marks_what_differs() -> None:
     number, same = Tuning.numbers()[:2]
     default = [row(FAMILIES), row(FAMILIES, CRASH, 0.25, True)]
     late = [row(FAMILIES), row(FAMILIES, CRASH, 7.0, False)]
-    changes = {'': ('', default), 'without pairs': (CHANNEL, default), 'x=0': (RULE, late),
-               tunings.told(number.name, number.most): (NUMBER, late),
-               tunings.told(same.name, same.most): (NUMBER, default)}
+    changes = {'': (False, default), 'without pairs': (False, default), 'x=0': (False, late),
+               tunings.told(number.name, number.most): (True, late),
+               tunings.told(same.name, same.most): (True, default)}
     rows = [replace(each, subject=replace(each.subject, change=change))
             for change, (_, of_change) in changes.items() for each in of_change]
     rows.append(row(FAMILIES, change='x=0', refused='too short'))
-    variants = [Variant('evidence', change=change, kind=kind)
-                for change, (kind, _) in changes.items()]
+    variants = [Variant('evidence', change=change, is_number=is_number)
+                for change, (is_number, _) in changes.items()]
     lines = ablation.section(rows, variants).pages[RESEARCH]
     nothing = ' | '.join('–' * 11)
     for told in ('as it is', 'without pairs'):

@@ -8,7 +8,7 @@ from evaluation_robot import START, robot
 from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.peers import (SPAN, FrequencyMonitor, GapBounds, GapMonitor,
-                                             LearnedFrequencyMonitor, messages_in_span)
+                                             messages_in_span)
 from self_awareness_evaluation.records import WindowedEvents
 from self_awareness_evaluation.variants import SYSTEMS, Variant
 
@@ -39,34 +39,15 @@ def test_messages_in_the_span() -> None:
         == [3, 3, 0]
 
 
-def test_frequency_monitor_has_the_limits_of_frequency_status() -> None:
+def test_the_frequency_monitor_takes_its_limits_from_the_recordings() -> None:
     monitor = FrequencyMonitor()
-    monitor.train([steady(30.0, 10.0)])
-    fewest, most = monitor.bounds['/image']
-    assert (fewest, most) == (pytest.approx(50.0), pytest.approx(50.0))
-    # At 9 Hz, 45 messages in 5 s are 10 % less; at 8.8 Hz it is more than the tolerance.
-    assert monitor.scores(steady(30.0, 9.0))[-1] == pytest.approx(-0.1)
-    assert monitor.scores(steady(30.0, 8.8))[-1] == pytest.approx(-0.12)
-    assert monitor.scores(steady(30.0, 12.0))[-1] == pytest.approx(-0.2)
-    for rate, abnormal in ((10.0, False), (9.4, False), (8.8, True), (10.8, False), (11.4, True)):
-        assert monitor.abnormal(steady(30.0, rate))[-1] == abnormal
-
-
-def test_frequency_monitor_leaves_out_topics_too_slow_for_its_tolerance() -> None:
-    monitor, learned = FrequencyMonitor(), LearnedFrequencyMonitor()
-    for watch in (monitor, learned):
-        watch.train([steady(60.0, 1.0)])
-    assert monitor.bounds == {}
-    assert monitor.scores(steady(10.0, 1.0)).tolist() == [0.0] * 95
-    assert learned.bounds['/image'] == (4, 6)
-
-
-def test_learned_frequency_monitor_takes_its_limits_from_the_recordings() -> None:
-    monitor = LearnedFrequencyMonitor()
     monitor.train([steady(30.0, 10.0), steady(30.0, 11.0)])
     assert monitor.bounds['/image'] == (49, 56)
     assert monitor.scores(steady(30.0, 9.0))[-1] == pytest.approx(-(49 - 45) / 49)
     assert monitor.scores(steady(30.0, 12.6))[-1] == pytest.approx(-(63 - 56) / 56)
+    slow = FrequencyMonitor()
+    slow.train([steady(60.0, 1.0)])
+    assert slow.bounds['/image'] == (4, 6)
 
 
 def test_irregular_topics_have_no_frequency() -> None:
@@ -74,9 +55,9 @@ def test_irregular_topics_have_no_frequency() -> None:
     stamps = START + np.round(np.cumsum(gaps) * SECOND_NS).astype(np.int64)
     recording = WindowedEvents([EventType('/human', '/speech', 'std_msgs/String')], stamps,
                                np.zeros(200, dtype=np.uint32), int(stamps[-1]) + 1)
-    for monitor in (FrequencyMonitor(), LearnedFrequencyMonitor()):
-        monitor.train([recording])
-        assert monitor.bounds == {}
+    monitor = FrequencyMonitor()
+    monitor.train([recording])
+    assert monitor.bounds == {}
 
 
 def test_gaps_may_last_a_quarter_longer_than_ever_seen() -> None:

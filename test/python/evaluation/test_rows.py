@@ -59,8 +59,7 @@ def test_normal_operation() -> None:
     assert found.hours == pytest.approx(5.0 / 3600.0)
     assert found.standing_hours == pytest.approx(1.0 / 3600.0)
     assert (found.alarms, found.warnings, found.evidence) == (1, 3, ('answers',))
-    assert (found.suspicions, found.expected, found.watched, found.components) == (
-        ('new mode',), 0.4, 3, 4)
+    assert (found.expected, found.watched, found.components) == (0.4, 3, 4)
 
 
 def test_who_is_named_though_a_fault_does_not_reach_him() -> None:
