@@ -112,6 +112,14 @@ double Relations::medianDelay(EventId from, EventId to) const {
   return log_bins::middle(counts_.delays(from, to).middle(0).last);
 }
 
+bool Relations::isLate(EventId from, EventId to) const {
+  return medianDelay(from, to) > period(from, to) / 2;
+}
+
+bool Relations::areOfOneSource(EventId from, EventId to) const {
+  return counts_.vocabulary().at(from).source == counts_.vocabulary().at(to).source;
+}
+
 double Relations::spread(EventId from, EventId to, double left_out, double period) const {
   const DelayHistogram& delays = counts_.delays(from, to);
   const double wanted = (1 - left_out) * static_cast<double>(counts_.total(from, to));
@@ -176,9 +184,7 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
   relation.spread = spread(from, to, left_out, period(from, to));
   relation.reaches = reaches(from, to);
   relation.irregular = isIrregular(from, to);
-  const bool one_source =
-      counts_.vocabulary().at(from).source == counts_.vocabulary().at(to).source;
-  if (relation.reaches && !one_source) {
+  if (relation.reaches && !areOfOneSource(from, to)) {
     // It may answer to every Nth message: then its period is its own.
     relation.spread = std::min(relation.spread, spread(from, to, left_out, meanGap(to)));
   }
@@ -186,10 +192,7 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
                        : relation.reaches || relation.irregular
                            ? tuning_.chance_of_one
                            : tuning_.chance_of_any / looked_at_;
-  // Who comes in the second half of a period after another may as well be the one that it asks; of
-  // what one node publishes, nobody knows what comes upon what.
-  const bool late =
-      (!relation.reaches || one_source) && medianDelay(from, to) > period(from, to) / 2;
+  const bool late = (!relation.reaches || areOfOneSource(from, to)) && isLate(from, to);
   relation.watched = !late && byChance(relation) <= level;
   relation.starts_needed =
       relation.watched || late || relation.spread >= 1
@@ -239,7 +242,9 @@ Relation Relations::owed(EventId from, EventId to) const {
   const DelayHistogram::Bins usual = counts_.delays(from, to).middle(0.9);
   const bool in_order =
       log_bins::middle(usual.first) >= tuning_.least_of_longest * log_bins::middle(usual.last);
-  relation.watched = asked.beyond_chance && in_order && (graph_.empty() || asked.reaches) &&
+  const bool late = asked.reaches && areOfOneSource(from, to) && isLate(from, to);
+  relation.watched = asked.beyond_chance && in_order && !late &&
+                     (graph_.empty() || asked.reaches) &&
                      asked.divergence > std::log(looked_at_ / tuning_.chance_of_any);
   return relation;
 }

@@ -365,5 +365,16 @@ TEST(Relations, WithAGraphADeadlineNeedsAMessageThatGetsThere) {
   EXPECT_FALSE(isOwed(counts, other));
 }
 
+TEST(Relations, WhatANodeSaysAtItsNextStartIsNoAnswerToItsLastEnd) {
+  const std::vector<EventType> one_node{{"/a", "/end", "T"}, {"/a", "/begin", "T"}};
+  const std::vector<EventType> two_nodes{{"/a", "/end", "T"}, {"/b", "/begin", "T"}};
+  const Events ends = requests(1);
+  const Events at_once = together({ends, answers(kB, ends, 100 * kMillisecond)});
+  const Events later = together({ends, answers(kB, ends, 2200 * kMillisecond)});
+  EXPECT_TRUE(isOwed(countsOf({at_once}, one_node)));
+  EXPECT_TRUE(isOwed(countsOf({later}, two_nodes)));
+  EXPECT_FALSE(isOwed(countsOf({later}, one_node)));
+}
+
 }  // namespace
 }  // namespace self_awareness::core::evidence
