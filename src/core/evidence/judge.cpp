@@ -175,7 +175,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       unsubscribed_(*model_),
       accepted_(model_, std::move(heard)),
       settling_(model_),
-      excuses_(model_, allExcuses(model_, std::move(graph))),
+      excuses_(model_, allExcuses(model_, graph_)),
       shares_(model_->tracks().size(), 0),
       tell_shares_(std::move(shares)),
       excesses_(model_) {
@@ -245,7 +245,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   judgement.suspicious = never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy ||
                          !who_sends_.evidence().empty() || !judgement.suspects.empty();
   judgement.evidence = evidenceOf(judgement);
-  const std::vector<Suspect> excused = std::exchange(judgement.suspects, {});
+  const std::vector<Suspect> told = std::exchange(judgement.suspects, {});
   const bool somebody = largest > 1 || never_heard_.share() > 0 || unsubscribed_.any() ||
                         (judgement.busy && judgement.busy->late > 0);
   if (suspects != NameSuspects::kNever && somebody) {
@@ -255,7 +255,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     // Who is within his own range is no suspect because somebody else is unknown.
     judgement.suspects = who_sends_.alone(window, scorer_, suspects == NameSuspects::kAlways);
   }
-  for (const Suspect& each : excused) {
+  for (const Suspect& each : told) {
     const bool is_named =
         std::any_of(judgement.suspects.begin(), judgement.suspects.end(),
                     [&](const Suspect& named) { return named.component == each.component; });

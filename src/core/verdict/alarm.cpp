@@ -79,7 +79,8 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
     }
   }
   const bool is_named = isNamed();
-  const bool nobody = alarm.culprit.empty() && alarm.kind != Kind::kAllSilent;
+  const bool nobody =
+      alarm.culprit.empty() && alarm.kind != Kind::kAllSilent && alarm.kind != Kind::kTwoSenders;
   const std::int64_t began = culprit != nullptr ? culprit->onset : alarm.begin;
   if (verdict.busy && verdict.busy->since <= began && (culprit != nullptr ? !is_named : nobody)) {
     alarm.kind = Kind::kBusyMachine;

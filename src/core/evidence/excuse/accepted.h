@@ -28,7 +28,7 @@ class Accepted {
   /// count: a shorter gap is no absence.
   /// @param gap since its last event [ns]
   bool isBack(EventId id, std::int64_t gap) const {
-    return is_optional_[id] && gap > model_->longestGap(id) + kRateSpan;
+    return is_optional_[id] && gap > model_->longestPause(id);
   }
   /// Whether an event type that the model does not know is accepted.
   bool isAcceptedStranger(EventId id);

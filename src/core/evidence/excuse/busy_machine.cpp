@@ -102,8 +102,11 @@ std::optional<Busy> BusyMachine::late(const Unusual& window) {
       static_cast<double>(busy.late) * tuning.busy_one_in >=
           static_cast<double>(busy.components) &&
       static_cast<std::ptrdiff_t>(busy.late) >= std::count(silent.begin(), silent.end(), true);
-  if (!many ||
-      (!busy_since_ && !(window.isAbnormal() && areUnrelated(late, silent, window.causes)))) {
+  const bool is_abnormal =
+      std::any_of(window.excesses.begin(), window.excesses.end(), [](const Excess& excess) {
+        return excess.share > 1 && excess.excused != Excused::kAccepted;
+      });
+  if (!many || (!busy_since_ && !(is_abnormal && areUnrelated(late, silent, window.causes)))) {
     busy_since_.reset();
     return std::nullopt;
   }

@@ -4,14 +4,19 @@
 #include <optional>
 
 #include "core/evidence/explain/unusual.h"
+#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/judge.h"
 
 namespace self_awareness::core::evidence {
 
+/// Whether something unusual began since a time [ns]. What does not come, or too seldom, may have
+/// been so for its longest usual gap before anybody could see it.
+bool beganSince(std::int64_t since, const Excess& excess, const Model& model);
+
 /// Why what is unusual is nobody's fault (docs/method.md, section 6.1). An excuse sees all that is
-/// unusual, whatever others excuse of it, so their order does not matter. It covers only what
-/// began since it holds: Excuses has that rule.
+/// unusual, whatever others excuse of it: their order does not matter, but that what is accepted
+/// is known first. It covers what began since it holds, at most: Excuses has that rule.
 class Excuse {
  public:
   virtual ~Excuse() = default;

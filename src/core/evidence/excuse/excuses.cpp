@@ -10,13 +10,19 @@
 
 namespace self_awareness::core::evidence {
 
+bool beganSince(std::int64_t since, const Excess& excess, const Model& model) {
+  return excess.onset + (excess.isTooLittle() ? model.longestPause(excess.id) : 0) >= since;
+}
+
 void Excuses::closeWindow(std::vector<Excess>& excesses, const Unusual& window,
                           Judgement& judgement) {
   for (const std::unique_ptr<Excuse>& excuse : list_) {
     const std::optional<std::int64_t> since = excuse->closeWindow(window, judgement);
+    if (!since) {
+      continue;
+    }
     for (Excess& excess : excesses) {
-      const std::int64_t usual = excess.isTooLittle() ? model_->longestPause(excess.id) : 0;
-      if (since && excess.onset + usual >= *since && excuse->explains(excess, window)) {
+      if (beganSince(*since, excess, *model_) && excuse->explains(excess, window)) {
         excess.excused = std::min(excess.excused, excuse->reason());
       }
     }
@@ -41,7 +47,7 @@ void Excuses::restart() {
 Excuses::List allExcuses(const std::shared_ptr<const Model>& model,
                          const std::shared_ptr<const SourceGraph>& graph) {
   Excuses::List list;
-  // First, since what is accepted says nothing to the others.
+  // First, since what is accepted makes no machine busy.
   list.push_back(std::make_unique<NewMode>(model));
   list.push_back(std::make_unique<SilentTogether>(model, graph));
   list.push_back(std::make_unique<SlowerClock>(model));

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/evidence/excuse/excuse.h"
@@ -11,7 +12,7 @@
 namespace self_awareness::core::evidence {
 
 /// All excuses, and the one rule for them (docs/method.md, section 6.1): an excuse covers what
-/// began since it holds; who does not come, as if it had been missed after its longest usual gap.
+/// began since it holds, as beganSince() says.
 class Excuses {
  public:
   using List = std::vector<std::unique_ptr<Excuse>>;
@@ -20,7 +21,7 @@ class Excuses {
       : model_(std::move(model)), list_(std::move(list)) {}
 
   /// Excuses what is unusual in a window.
-  /// @param window whose excesses these are
+  /// @param window whose excesses these are: it sees their excuses
   /// @param judgement as Excuse::closeWindow()
   void closeWindow(std::vector<Excess>& excesses, const Unusual& window, Judgement& judgement);
   void accept(const Acceptances& accepted);

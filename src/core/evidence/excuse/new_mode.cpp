@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
-#include <utility>
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -53,14 +52,14 @@ std::optional<std::int64_t> NewMode::closeWindow(const Unusual& window, Judgemen
   } else if (!judgement.silent) {  // else it was there before all fell silent
     judgement.silent = Silent{{}, namesOf(stopped_), since_, true};
   }
-  return first;
+  return is_accepted_ ? std::numeric_limits<std::int64_t>::min() : first;
 }
 
 bool NewMode::explains(const Excess& excess, const Unusual& window) const {
-  if (std::binary_search(stopped_.begin(), stopped_.end(), excess.id)) {
-    return true;
-  }
   const std::int64_t last = window.heard().stamps()[excess.id];
+  if (std::binary_search(stopped_.begin(), stopped_.end(), excess.id)) {
+    return is_accepted_ || beganSince(last, excess, *model_);
+  }
   const bool went_on = is_accepted_ && last > since_ + toNanoseconds(model_->tuning().start_time);
   if (!excess.isTooLittle() || excess.finding() == Finding::kUnanswered || went_on) {
     return false;
@@ -83,7 +82,6 @@ void NewMode::accept(const Acceptances& accepted) {
 
 void NewMode::restart() {
   std::fill(excused_until_.begin(), excused_until_.end(), 0);
-  stopped_.clear();
 }
 
 std::set<std::size_t> NewMode::componentsOf(const Ids& ids) const {
@@ -184,12 +182,12 @@ std::vector<std::int64_t> NewMode::missedBy(const Unusual& window) const {
     if (excess.abnormal == kNotYet || !excess.isAbsence()) {
       continue;
     }
+    const std::int64_t usual = model_->longestPause(excess.id);
     for (EventId id = 0; id < model_->size(); ++id) {
       const std::int64_t last = window.heard().stamps()[id];
       const std::size_t component = model_->componentIndex(id);
       // Who fell silent long before it was heard last does not wait for it.
-      if (window.heard().hasSeen(id) && last < excess.abnormal &&
-          last - excess.onset <= model_->longestPause(excess.id) &&
+      if (window.heard().hasSeen(id) && last < excess.abnormal && last - excess.onset <= usual &&
           (component == excess.component ||
            window.causes.isUpstream(component, excess.component))) {
         missed[id] = std::min(missed[id], excess.abnormal);

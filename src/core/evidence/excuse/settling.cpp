@@ -36,10 +36,16 @@ void Settling::forgetStarts(std::int64_t now, Scorer& scorer) {
 }
 
 void Settling::leaveOut(std::vector<double>& evidence) const {
-  for (std::size_t track = 0; (all_until_ || !until_.empty()) && track < evidence.size();
-       ++track) {
+  if (!all_until_ && until_.empty()) {
+    return;
+  }
+  std::vector<bool> settles(model_->size(), false);
+  for (const auto& [id, until] : until_) {
+    settles[id] = true;
+  }
+  for (std::size_t track = 0; track < evidence.size(); ++track) {
     const Track& watched = model_->tracks()[track];
-    if (until_.count(watched.to) > 0 || until_.count(watched.from) > 0 ||
+    if (settles[watched.to] || settles[watched.from] ||
         (all_until_ && watched.channel->finding() != Finding::kSilent)) {
       evidence[track] = 0;
     }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string>
+#include <vector>
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -70,9 +72,7 @@ std::optional<std::int64_t> SilentTogether::closeWindow(const Unusual& window,
 }
 
 bool SilentTogether::explains(const Excess& excess, const Unusual& /*window*/) const {
-  // What is left of a sum is no finding.
-  return found_->has(model_->components()[excess.component]) &&
-         (excess.isTooLittle() || excess.share <= 1);
+  return found_->has(model_->components()[excess.component]) && excess.isTooLittle();
 }
 
 std::vector<std::size_t> SilentTogether::together(const std::vector<std::size_t>& group,

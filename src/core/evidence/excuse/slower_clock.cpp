@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include "core/evidence/channel/channel.h"
 #include "self_awareness/core/stream/clock.h"
@@ -30,9 +31,7 @@ std::optional<std::int64_t> SlowerClock::closeWindow(const Unusual& window, Judg
   faster_ = faster(window);
   const std::int64_t now = window.heard().windowEnd();
   if (haveNoOtherReason(faster_, window)) {
-    for (const auto& [component, suspect] : faster_) {
-      since_ = std::min(since_.value_or(suspect.onset), suspect.onset);
-    }
+    since_ = since_.value_or(now);
     if (faster_.size() > number_) {
       number_ = faster_.size();
       reason_ = sendsFaster(number_, factorOf(faster_.begin()->second));
@@ -43,6 +42,11 @@ std::optional<std::int64_t> SlowerClock::closeWindow(const Unusual& window, Judg
   if (!since_ || now - last_ > kHold) {
     restart();
     return std::nullopt;
+  }
+  for (const Excess& excess : window.excesses) {
+    const bool is_of_them =
+        faster_.count(excess.component) > 0 && excess.channel->kind() == Kind::kFast;
+    since_ = is_of_them ? std::min(*since_, excess.onset) : since_;
   }
   for (const auto& [component, suspect] : faster_) {
     judgement.suspects.push_back(suspect);

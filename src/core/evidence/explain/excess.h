@@ -14,8 +14,8 @@ namespace self_awareness::core::evidence {
 
 /// Why no component is to blame for what is unusual; of several reasons, the first one counts.
 enum class Excused {
-  kAccepted,     ///< somebody said that it is normal
   kAllSilent,    ///< all fell silent with it, or all of its computer
+  kAccepted,     ///< somebody said that it is normal
   kNewMode,      ///< others stopped with it, which do not hear each other
   kSlowerClock,  ///< the simulation runs slower than in training
   kBusy,         ///< the machine has too little time for all

@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "core/evidence/explain/unusual.h"

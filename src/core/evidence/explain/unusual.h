@@ -15,7 +15,7 @@ namespace self_awareness::core::evidence {
 
 /// A window in which something may be unusual, as excuses and the explanation see it.
 struct Unusual {
-  /// All of it. What is accepted says nothing; whatever else has an excuse, others see it, too.
+  /// All of it, whatever excuses it has by then.
   const std::vector<Excess>& excesses;
   const Scorer& scorer;  ///< that has closed the window
   const RecentEvents& events;
@@ -29,9 +29,8 @@ struct Unusual {
 
   const Heard& heard() const { return scorer.heard(); }
   bool isAbnormal() const {
-    return std::any_of(excesses.begin(), excesses.end(), [](const Excess& excess) {
-      return excess.share > 1 && excess.excused != Excused::kAccepted;
-    });
+    return std::any_of(excesses.begin(), excesses.end(),
+                       [](const Excess& excess) { return excess.share > 1; });
   }
 };
 

@@ -142,8 +142,8 @@ void Moved::closeWindow(const Heard& heard, Accepted& accepted) {
     moved_[known] = true;
   }
   for (const auto& [known, last] : other_values_) {
-    has_other_value_[known] = now_ - last <= model_->longestGap(known) + kRateSpan &&
-                              heard.lastSeen(known).value_or(last) <= last;
+    has_other_value_[known] =
+        now_ - last <= model_->longestPause(known) && heard.lastSeen(known).value_or(last) <= last;
   }
 }
 

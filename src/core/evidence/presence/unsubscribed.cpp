@@ -75,7 +75,11 @@ void Unsubscribed::closeWindow(std::int64_t end) {
   for (const auto& [component, topics] : late) {
     if (ids_.count(component) > 0) {
       suspects_.push_back(suspect(component, topics));
-      suspects_.back().onset = *missing_.at({component, topics.front()}).since;
+      Suspect& suspect = suspects_.back();
+      suspect.onset = end;
+      for (const std::string& topic : topics) {
+        suspect.onset = std::min(suspect.onset, *missing_.at({component, topic}).since);
+      }
     }
   }
 }

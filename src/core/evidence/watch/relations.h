@@ -59,11 +59,11 @@ class Relations {
   double meanGap(EventId id) const { return counts_.type(id).meanGap(); }  // [ns]
   /// The shorter of the two mean gaps [ns].
   double period(EventId from, EventId to) const;
-  double medianDelay(EventId from, EventId to) const;
+  double medianDelay(EventId from, EventId to) const;  // [ns]
   /// Whether one comes in the second half of a period after another: it may as well be the one
   /// that asks, and of what one node publishes, nobody knows what comes upon what.
   bool isLate(EventId from, EventId to) const;
-  bool areOfOneSource(EventId from, EventId to) const;  // [ns]
+  bool areOfOneSource(EventId from, EventId to) const;
   /// Share of a period that the delays lie in, in all starts together, 0 to 1.
   /// @param left_out share of the delays that may lie elsewhere
   /// @param period [ns]

@@ -167,6 +167,15 @@ TEST_F(NewModeTest, AnotherFaultInAnAcceptedModeIsNoNewMode) {
   EXPECT_EQ(share(kImu), 2);
 }
 
+TEST_F(NewModeTest, AnAcceptedModeDoesNotHideThatAllFellSilent) {
+  accept({"/arm", "/laser", "/lidar", "/wheels"});
+  const Judgement judgement = found({kAgo, kAgo, kAgo, kAgo, kAgo, kAgo});
+  ASSERT_TRUE(judgement.silent);
+  EXPECT_FALSE(judgement.silent->others_go_on);
+  EXPECT_EQ(judgement.silent->components.size(), kRobot.size());
+  EXPECT_EQ(excused_, std::vector<Excused>(kRobot.size(), Excused::kAllSilent));
+}
+
 TEST_F(NewModeTest, WhenAnAcceptedModeBeginsTheFirstOneMissedIsNotDead) {
   constexpr std::int64_t kGap = 100 * kMillisecond;
   accept({"/arm", "/laser", "/lidar", "/wheels"});

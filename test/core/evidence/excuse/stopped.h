@@ -59,7 +59,9 @@ class StoppedTest : public testing::Test {
     }
     Judgement judgement;
     together_->closeWindow(excesses, moment_->in(excesses, scorer, *events_), judgement);
+    excused_.clear();
     for (const Excess& excess : excesses) {
+      excused_.push_back(excess.excused);
       shares_[excess.track] = excess.excused == Excused::kNo ? shares_[excess.track] : 0;
     }
     return judgement;
@@ -82,6 +84,7 @@ class StoppedTest : public testing::Test {
   std::optional<RecentEvents> events_;
   std::vector<double> shares_;
   std::map<EventId, std::int64_t> abnormal_;  // since when [ns]
+  std::vector<Excused> excused_;              // what was unusual, at last
 };
 
 }  // namespace self_awareness::core::evidence

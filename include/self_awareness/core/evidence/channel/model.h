@@ -85,8 +85,7 @@ class Model {
   bool isRare(EventId id, std::int64_t silence) const;
   /// Longest gap between two events of the type in training [ns]; 0 if there was none.
   std::int64_t longestGap(EventId id) const { return statistics_.type(id).longestGap(); }
-  /// For so long, a type may be silent with others that fell silent at one moment: its longest
-  /// gap, and what a moment is [ns].
+  /// The same, and as long as things that happen at one moment are apart, kRateSpan [ns].
   std::int64_t longestPause(EventId id) const { return longestGap(id) + kRateSpan; }
   /// Longest time without any event in training that was no stall of the machine [ns].
   std::int64_t longestSilence() const;
