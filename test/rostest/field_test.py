@@ -163,10 +163,14 @@ class FieldTest(MonitorCase):
             began = rospy.get_time()
             for name, value in fault.items():
                 setattr(sent, name, value)
-            said = await_condition(words, lambda: next(
-                (each for each in listener.alarms
-                 if (each.kind, each.level) == (kind, level) and words in each.message), None),
-                seconds + 10)
+            try:
+                said = await_condition(words, lambda: next(
+                    (each for each in listener.alarms
+                     if (each.kind, each.level) == (kind, level) and words in each.message), None),
+                    seconds + 10)
+            except AssertionError:
+                print([(each.kind, each.level, each.message) for each in listener.alarms])
+                raise
             self.assertLess(said.header.stamp.to_sec() - began, seconds, said.message)
             self.assertEqual(said.component, NODE)
 

@@ -48,9 +48,9 @@ class IncidentsTest(TrainedCase):
             raise
         return self.of_driver()[0]
 
-    def listed(self, *options: str) -> List[Dict[str, Any]]:
+    def listed(self) -> List[Dict[str, Any]]:
         return json.loads(run_program('incidents', '--json', '--file',
-                                      self.path('recorder/self_awareness.incidents'), *options))
+                                      self.path('recorder/self_awareness.incidents')))
 
     @again_if_disturbed
     def test_an_incident_is_opened_repeated_and_over_and_outlives_the_monitor(self) -> None:
@@ -78,8 +78,8 @@ class IncidentsTest(TrainedCase):
                     and any(each['alarms'] == 2 for each in self.listed()), 20)
                 monitor.send(signal.SIGKILL)
                 monitor.wait(10)
-            kept, = [each for each in self.listed('--component', '/driver')
-                     if each['level'] == 'ERROR']
+            kept, = [each for each in self.listed()
+                     if (each['component'], each['level']) == ('/driver', 'ERROR')]
             self.assertEqual((kept['id'], kept['over']), (opened.id, False))
             self.latest = None
             with self.monitored(), MonitorListener() as listener:

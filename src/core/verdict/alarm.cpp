@@ -57,6 +57,20 @@ bool beganEarlier(const Suspect& first, const Suspect& culprit, bool is_named) {
          first.onset < culprit.onset;
 }
 
+/// Who is to blame for a suspicion once the machine is busy no more: the first one that is named
+/// now, or was meanwhile, for itself; null: nobody.
+const Suspect* suspectedFor(const std::vector<Suspect>& suspects, const Alarm& alarm) {
+  for (const std::vector<Suspect>* named : {&suspects, &alarm.later}) {
+    for (const Suspect& suspect : *named) {
+      const Kind kind = suspect.reason.kind;
+      if (suspect.abnormal || kind == Kind::kNeverCame || kind == Kind::kUnsubscribed) {
+        return &suspect;
+      }
+    }
+  }
+  return nullptr;
+}
+
 /// Takes in that a culprit has an excuse, that who is dead has none any more, or that who is named
 /// before the culprit now was unusual before. Who is to blame is settled when an alarm is raised,
 /// and changes for nothing else.
@@ -75,6 +89,12 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
     if ((is_excused_no_more && isAbsence(first.reason.kind)) ||
         (culprit != nullptr && beganEarlier(first, *culprit, isNamed()))) {
       blame(first, alarm);
+      culprit = alarm.suspectToBlame();
+    }
+  }
+  if (alarm.level == Alarm::Level::kSuspicion && was_busy && !verdict.busy) {
+    if (const Suspect* const suspect = suspectedFor(suspects, alarm)) {
+      blame(Suspect(*suspect), alarm);
       culprit = alarm.suspectToBlame();
     }
   }

@@ -217,6 +217,30 @@ TEST_F(AlarmsTest, WhoIsDeadOnceTheMachineIsFreeIsToBlame) {
   expectBlamed("/a", Kind::kSilent);
 }
 
+TEST_F(AlarmsTest, WhatElseIsSuspiciousIsToldOnceTheMachineIsFree) {
+  Suspect stranger = missing(1);
+  stranger.reason.kind = Kind::kStranger;
+  for (const bool is_told_meanwhile : {false, true}) {
+    Verdict busy = verdict(kSuspicion);
+    busy.evidence = "busy";
+    busy.busy = Busy{0, 3, 1.9, window_.start};
+    add(busy);
+    busy.new_suspects = {stranger};
+    if (is_told_meanwhile) {
+      add(busy);
+    }
+    expectBlamed("", Kind::kBusyMachine);
+    const Suspect never = suspect(0, Kind::kNeverCame);
+    add(verdict(kSuspicion, is_told_meanwhile ? std::vector<Suspect>{} : std::vector{never}));
+    if (is_told_meanwhile) {
+      expectBlamed("/b", Kind::kStranger);
+    } else {
+      expectBlamed("/a", Kind::kNeverCame);
+    }
+    add(verdict(kOk));
+  }
+}
+
 TEST_F(AlarmsTest, WhoWasSilentFirstIsNotToBlameWhereAllAre) {
   add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   EXPECT_EQ(alarms_.standing()->culprit, "/b");
