@@ -80,7 +80,9 @@ class LearnedTest(LearnCase):
             self.assertEqual(settled.unknown_events, 0)
             self.assertRegex(process.output, r'(?m)^learned from 2 starts, \d min: at most .*; '
                              'deaths of ')
-            self.assertRegex(process.output, r'(?m)^faults: found \d+ of \d+, half of them ')
+            # Where the machine was busy all the time, as beside other tests, none is injected.
+            self.assertRegex(process.output, r'(?m)^(faults: found \d+ of \d+, half of them |'
+                             'no fault is injected into these, in which the machine was busy)')
             sources = {kind.source for kind in TrainedModel.load(self.model).event_types}
             self.assertLessEqual({'/player', '/slam', '/base', rospy.get_name()}, sources)
             self.assertEqual([name for name in sources if 'self_awareness' in name], [])

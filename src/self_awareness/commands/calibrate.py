@@ -109,7 +109,8 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         cli.print_lines([
             *evidence_report.on_normal(measured.normal, measured.false_alarms, arguments.details),
             *evidence_report.faults(measured.faulty, arguments.details),
-            *(evidence_report.not_tried(measured.injected) if arguments.details else [])])
+            *(evidence_report.not_tried(measured.injected)
+              if arguments.details or not measured.faulty else [])])
     else:
         measured = _find_threshold(trained, parameters, arguments.cutoff, normal_runs, recorded,
                                    faults)
