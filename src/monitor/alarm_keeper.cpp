@@ -11,7 +11,6 @@
 #include "session.h"
 
 namespace self_awareness {
-namespace {}  // namespace
 
 AlarmKeeper::AlarmKeeper(RecorderFolder folder, std::string run_id)
     : folder_(std::move(folder)),
