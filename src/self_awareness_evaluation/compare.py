@@ -6,11 +6,10 @@ from pathlib import Path
 from typing import Callable, Dict, List, Sequence
 
 from self_awareness_evaluation import pages, row_files
-from self_awareness_evaluation.figures import grouped
+from self_awareness_evaluation.figures import NONE, cells, grouped, table
+from self_awareness_evaluation.pages import FULL, RESEARCH, written_by
 from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.rows import Row
-from self_awareness_evaluation.pages import FULL, RESEARCH, written_by
-from self_awareness_evaluation.tables import NONE, cells, table
 
 NAME = 'before_after'
 

@@ -11,18 +11,18 @@ from typing import Any, Callable, Iterable, List, Optional, Sequence, Tuple
 from self_awareness import Tuning
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
-from self_awareness_evaluation import experiment, options, outages, pages, simulated, tunings
+from self_awareness_evaluation import experiment, options, outages, pages, simulated
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import AFTER_DEATH_S, KINDS, check_hours, recorded
 from self_awareness_evaluation.pages import FULL, Section
-from self_awareness_evaluation.records import FAMILIES as OF_FAMILIES
 from self_awareness_evaluation.records import OWN, REAL, Learning
+from self_awareness_evaluation.records import FAMILIES as OF_FAMILIES
 from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.sections import ablation, families, own_robot
 from self_awareness_evaluation.sections import recordings as real
-from self_awareness_evaluation.variants import EVIDENCE, SYSTEMS
-from self_awareness_evaluation.variants import Variant, one_by_one, side_by_side
+from self_awareness_evaluation.variants import (EVIDENCE, SYSTEMS, Variant, add_changes, change_of,
+                                                one_by_one, side_by_side)
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import load_scenario
 
@@ -72,7 +72,7 @@ def add(parts: Any) -> None:
     _add_common(parser, _recordings, 'recordings')
     parser.add_argument('--data', type=Path, required=True, metavar='DIR',
                         help='the folder of the recordings')
-    tunings.add(parser)
+    add_changes(parser)
 
     parser = parts.add_parser(
         'ablation', help='what each part of the evidence detector buys',
@@ -125,7 +125,7 @@ def _add_systems(parser: argparse.ArgumentParser, default: Sequence[str]) -> Non
     parser.add_argument('--systems', nargs='+', choices=SYSTEMS, default=default,
                         metavar='SYSTEM', help='evaluate these only, the first one in most '
                         f'tables: {", ".join(SYSTEMS)} (default: {" ".join(default)})')
-    tunings.add(parser)
+    add_changes(parser)
 
 
 def _simulated(arguments: argparse.Namespace, command: str) -> None:
@@ -150,7 +150,7 @@ def _families(arguments: argparse.Namespace, command: str) -> None:
 
 
 def _recordings(arguments: argparse.Namespace, command: str) -> None:
-    variants = side_by_side(list(outages.SYSTEMS), [None], tunings.of(arguments))
+    variants = side_by_side(list(outages.SYSTEMS), [None], change_of(arguments))
     _measure(real.NAME, _real(arguments.data, variants), '', arguments, command, real.section)
 
 
@@ -186,7 +186,7 @@ def _measure(name: str, units: Sequence[Unit], plan: str, arguments: argparse.Na
 def _variants(arguments: argparse.Namespace, learnings: Sequence[Learning],
               budgets: Sequence[Optional[float]] = (None,)) -> List[Variant]:
     """Return the systems that the arguments ask for, with what they change of the method."""
-    change = tunings.of(arguments)
+    change = change_of(arguments)
     if change and not set(EVIDENCE) & set(arguments.systems):
         raise ValueError(f'--set, --without: they change {" and ".join(EVIDENCE)} only, and none '
                          'of them is evaluated; add one to --systems')

@@ -17,13 +17,13 @@ from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
-from self_awareness_evaluation import tunings
 from self_awareness_evaluation.detectors import Paper, judged_of
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.peers import FrequencyMonitor
 from self_awareness_evaluation.records import NORMAL, WindowedEvents
 from self_awareness_evaluation.rows import HOUR_S, Row, Subject, at_end
 from self_awareness_evaluation.systems import System, SystemAlarm
+from self_awareness_evaluation.variants import tuning_of
 
 OUTAGE = 'outage'  # kind of fault: what is wrong in a recording of a real robot
 
@@ -103,7 +103,7 @@ def rows(case: Case, data: Path, unit: Unit) -> Iterator[Row]:
     for variant in unit.variants:
         subject = unit.subject(variant)
         try:
-            judged = SYSTEMS[variant.system](case, data, tunings.tuning_of(variant.change))
+            judged = SYSTEMS[variant.system](case, data, tuning_of(variant.change))
         except TooLittleError as error:
             yield Row(subject, NORMAL, refused=str(error))
             if case.outage is not None:

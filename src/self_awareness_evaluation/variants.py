@@ -1,13 +1,14 @@
-"""What judges the records: a system, or the method with one thing changed."""
+"""What judges the records: a system, or the method with numbers or channels changed."""
 from __future__ import annotations
 
+import argparse
 import math
 from dataclasses import dataclass
 from typing import AbstractSet, Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 from self_awareness import Tuning, TuningNumber
 from self_awareness.calibration import limits
-from self_awareness_evaluation import tunings
+from self_awareness.commands import cli
 from self_awareness_evaluation.detectors import Evidence, Paper
 from self_awareness_evaluation.peers import FrequencyMonitor, GapMonitor
 from self_awareness_evaluation.records import Learning
@@ -23,6 +24,66 @@ SYSTEMS = (*EVIDENCE, *_OTHERS)  # the names of all systems
 
 _HALF, _DOUBLE = 0.5, 2.0
 
+WITHOUT, BETWEEN = 'without ', '; '
+
+OFF = 'off'  # as a value: the one that switches the rule off
+
+
+def add_changes(parser: argparse.ArgumentParser) -> None:
+    """Add the options that change the method."""
+    parser.add_argument('--without', choices=Tuning.channels(), nargs='+', action='extend',
+                        default=[], metavar='CHANNEL', help='let evidence judge without these '
+                        f'channels: {", ".join(Tuning.channels())}')
+    parser.add_argument('--set', type=_change, nargs='+', action='extend', default=[],
+                        metavar='NAME=VALUE', help='change these numbers of the evidence method, '
+                        f'as `info --tuning` lists them; {OFF} as a value switches a rule off')
+
+
+def change_of(arguments: argparse.Namespace) -> str:
+    """Return what the arguments of add_changes() change."""
+    return BETWEEN.join([*arguments.set, *(WITHOUT + channel for channel in arguments.without)])
+
+
+def number_set(name: str, value: float) -> str:
+    """Return how a changed number is written."""
+    return f'{name}={value:.10g}'
+
+
+def tuning_of(change: str) -> Tuning:
+    """Return the method with a change.
+
+    Args:
+        change: `NAME=VALUE` and `without CHANNEL`, several with BETWEEN between; empty: none.
+    """
+    tuning = Tuning()
+    for each in change.split(BETWEEN) if change else []:
+        if each.startswith(WITHOUT):
+            tuning.leave_out(each[len(WITHOUT):])
+        else:
+            name, _, value = each.partition('=')
+            tuning.set(name, float(value))
+    return tuning
+
+
+@cli.checked
+def _change(text: str) -> str:
+    name, is_one, value = text.partition('=')
+    if not is_one:
+        raise ValueError(f'expected NAME=VALUE, not {text}')
+    tuning = Tuning()
+    tuning.get(name)  # says so if there is none of this name
+    if value == OFF:
+        off = next(number.off for number in Tuning.numbers() if number.name == name)
+        if off is None:
+            raise ValueError(f'{name}: no value of it switches a rule off')
+        return number_set(name, off)
+    try:
+        number = float(value)
+    except ValueError:
+        raise ValueError(f'{name}: expected a number, not {value!r}') from None
+    tuning.set(name, number)
+    return number_set(name, number)
+
 
 @dataclass(frozen=True)
 class Variant:
@@ -30,7 +91,7 @@ class Variant:
 
     system: str  # one of SYSTEMS
     learning: Optional[Learning] = None  # what it learns from; None: the records say themselves
-    change: str = ''  # of the method, as tunings.tuning_of() reads it; empty: none
+    change: str = ''  # of the method, as tuning_of() reads it; empty: none
     # False alarms an hour that limits are made for; None: the usual ones, or the system has none.
     budget: Optional[float] = None
     faults: bool = True  # whether it judges records with a fault, too
@@ -41,7 +102,7 @@ class Variant:
         if self.system in _OTHERS:
             return _OTHERS[self.system]()
         return Evidence(set(graph) if self.system == EVIDENCE[0] else set(),
-                        tuning=tunings.tuning_of(self.change),
+                        tuning=tuning_of(self.change),
                         budget=limits.BUDGET if self.budget is None else self.budget)
 
 
@@ -72,13 +133,13 @@ def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Seque
     for name in numbers or ():
         Tuning().get(name)
     known = [number for number in Tuning.numbers() if numbers is None or number.name in numbers]
-    changes = [f'{tunings.WITHOUT}{name}' for name in
+    changes = [f'{WITHOUT}{name}' for name in
                (Tuning.channels() if channels is None else channels)]
-    changes += [tunings.told(number.name, number.off) for number in known
+    changes += [number_set(number.name, number.off) for number in known
                 if number.off is not None and number.off != number.default]
     method = EVIDENCE[0]
     return [Variant(method), *(Variant(method, change=change) for change in changes),
-            *(Variant(method, change=tunings.told(number.name, value), is_number=True)
+            *(Variant(method, change=number_set(number.name, value), is_number=True)
               for number in known for value in _values(number))]
 
 

@@ -7,12 +7,12 @@ from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
 import numpy as np
 
 from self_awareness.stamps import SECOND_NS, nanoseconds
-from self_awareness_evaluation.families.faults import (AFTER_CRASH, CRASH, FAILS, FLOOD, HALF_RATE,
-                                                       LATE, LOAD, LONGEST_START_S, LOSSES, MISSES,
-                                                       NOTHING, OLD, OTHER, RESTART, SILENT,
-                                                       SLOWER, STALL, STARVED, STOP, Fault)
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.robot import WARNING
+from self_awareness_evaluation.families.scene import (AFTER_CRASH, CRASH, FAILS, FLOOD, HALF_RATE,
+                                                      LATE, LOAD, LONGEST_START_S, LOSSES, MISSES,
+                                                      NOTHING, OLD, OTHER, RESTART, SILENT, SLOWER,
+                                                      STALL, STARVED, STOP, Fault)
 from self_awareness_evaluation.records import FaultRecord, Learning, WindowedEvents
 from self_awareness_evaluation.records import Robot as RecordedRobot
 

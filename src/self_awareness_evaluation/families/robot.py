@@ -8,15 +8,13 @@ import numpy as np
 
 from self_awareness import EventType, Waiting
 from self_awareness.stamps import SECOND_NS, nanoseconds
-from self_awareness_evaluation.families import messages
-from self_awareness_evaluation.families.conditions import Activity, Conditions, in_order
-from self_awareness_evaluation.families.emissions import (Emission, Feedback, Once,
-                                                          Sporadic, stalled)
-from self_awareness_evaluation.families.faults import (AFTER_CRASH, CRASH, FAILS, FLOOD, HALF_RATE,
-                                                       LATE, LOAD, LONGEST_START_S, LOSSES, MISSES,
-                                                       NOTHING, OLD, OTHER, RESTART, SILENT,
-                                                       SLOWER, STARVED, Fault)
-from self_awareness_evaluation.families.scene import LASTS_S, Scene
+from self_awareness_evaluation.families.emissions import (Emission, Feedback, Once, Sporadic,
+                                                          attributes_of, has_header, stalled)
+from self_awareness_evaluation.families.scene import (AFTER_CRASH, CRASH, FAILS, FLOOD, HALF_RATE,
+                                                      LASTS_S, LATE, LOAD, LONGEST_START_S, LOSSES,
+                                                      MISSES, NOTHING, OLD, OTHER, RESTART, SILENT,
+                                                      SLOWER, STARVED, Activity, Conditions, Fault,
+                                                      Scene, in_order)
 from self_awareness_evaluation.records import WindowedEvents
 
 SLOWER_RATE = 0.7
@@ -118,7 +116,7 @@ class Robot:
         """The regular components whose messages have headers, each on its first topic."""
         first: Dict[str, bool] = {}
         for index, output in enumerate(self.outputs):
-            first.setdefault(output.source, messages.has_header(output.datatype, index))
+            first.setdefault(output.source, has_header(output.datatype, index))
         return [source for source in self.regular if first[source]]
 
     @property
@@ -224,7 +222,7 @@ class Robot:
         lost = scene.has(LOSSES, output.source, times)
         lost &= scene.of_recording(f'losses {index}').uniform(size=len(times)) < _LOST
         times, numbers = times[~lost], numbers[~lost]
-        return times, messages.attributes(
+        return times, attributes_of(
             output.datatype, scene, index, times, numbers, times - scene.published[index][numbers]
             + _OLD_S * scene.has(OLD, output.source, times))
 

@@ -1,13 +1,143 @@
-"""What the messages of one recording have in common: its time, its chance, the robot's state."""
+"""What the messages of one recording have in common: conditions, faults, time, chance."""
 from __future__ import annotations
 
 import zlib
+from dataclasses import dataclass
 from typing import Dict, List, Tuple
 
 import numpy as np
 
-from self_awareness_evaluation.families.conditions import Activity, Conditions
-from self_awareness_evaluation.families.faults import STALL, Fault
+_TRANSPORT_S = 0.0002
+_LINK_S = 0.004
+_SHORTEST_LINK, _LONGEST_LINK = 0.7, 1.5
+_LINK_HEAVY = 10.0
+_HICCUP_S = 0.02
+_SOON_S = 0.15
+_HOUR_S = 3600.0
+
+
+@dataclass(frozen=True)
+class Activity:
+    """Something that the robot does now and then; both times are exponentially distributed."""
+
+    on_s: float  # mean time that it lasts
+    off_s: float  # mean time between
+
+    def edges(self, begin: float, end: float, rng: np.random.Generator) -> np.ndarray:
+        """Return when it begins and ends in turn [s], from `begin` to after `end`."""
+        pairs = int((end - begin) / (self.on_s + self.off_s) * 1.5) + 20
+        lengths = np.empty(2 * pairs)
+        lengths[0::2] = rng.exponential(self.off_s, pairs)
+        lengths[1::2] = rng.exponential(self.on_s, pairs)
+        if rng.uniform() < self.on_s / (self.on_s + self.off_s):
+            lengths[0] = 0.0
+        return begin + np.cumsum(lengths)
+
+
+@dataclass(frozen=True)
+class Conditions:
+    """What is the same for all messages of a robot."""
+
+    # Share of messages that come some 20 ms later still, as what follows them does.
+    hiccups: float = 1e-5
+    # Share of messages that a listener does not get, of those that come soon after the one before:
+    # queues lose what comes too fast for the listener.
+    lost: float = 0.0
+    lost_however_slow: float = 0.0  # the same of all other messages
+    heavy: float = 0.0  # share of delays over the wireless link that are ten times as long
+    load_period_s: float = 0.0  # time in which the load rises and falls once [s]; 0: it does not
+    most_load: float = 1.0  # by how much longer work takes at the most, 1 or more
+    # How often the host stalls; everything waits then, also the recorder, and comes at once.
+    stalls_an_hour: float = 0.0
+    stall_s: Tuple[float, float] = (0.1, 0.6)  # for how long, at least and at most [s]
+
+    def load(self, times: np.ndarray, phase: float) -> np.ndarray:
+        """Return by how much longer work takes at some times [s]; phase: 0 to 1."""
+        if not self.load_period_s:
+            return np.ones(len(times))
+        turn = 2.0 * np.pi * (times / self.load_period_s + phase)
+        return 1.0 + (self.most_load - 1.0) * (1.0 - np.cos(turn)) / 2.0
+
+    def transport(self, sent: np.ndarray, over_link: bool,
+                  rng: np.random.Generator) -> np.ndarray:
+        """Return when messages arrive that were sent at some times [s], in their order."""
+        # A row for each message: what comes later does not change it.
+        drawn = rng.uniform(size=(len(sent), 3))
+        delay = -np.log1p(-drawn[:, 0]) * _TRANSPORT_S
+        if over_link:
+            link = _LINK_S * (_SHORTEST_LINK + (_LONGEST_LINK - _SHORTEST_LINK) * drawn[:, 1])
+            delay += np.where(drawn[:, 2] < self.heavy, _LINK_HEAVY * link, link)
+        return in_order(sent + delay)
+
+    def received(self, arrived: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+        """Return which messages a listener gets, bool, of those that arrive at some times [s]."""
+        if not self.lost and not self.lost_however_slow:
+            return np.ones(len(arrived), dtype=bool)
+        soon = np.diff(arrived, prepend=-np.inf) < _SOON_S
+        return rng.uniform(size=len(arrived)) >= np.where(soon, self.lost, self.lost_however_slow)
+
+    def hiccup(self, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+        """Return when messages are sent that were to be at some times [s]."""
+        drawn = rng.uniform(size=(len(times), 2))
+        hit = drawn[:, 0] < self.hiccups
+        return in_order(times - np.log1p(-drawn[:, 1]) * _HICCUP_S * hit)
+
+    def stalls(self, begin: float, end: float,
+               rng: np.random.Generator) -> Tuple[np.ndarray, np.ndarray]:
+        """Return when the host stalls, and for how long [s]."""
+        number = rng.poisson((end - begin) / _HOUR_S * self.stalls_an_hour)
+        return (np.sort(rng.uniform(begin, end, number)),
+                rng.uniform(*self.stall_s, number))
+
+
+def in_order(times: np.ndarray) -> np.ndarray:
+    """Return times at which nothing overtakes what was before it."""
+    return np.maximum.accumulate(times) if len(times) else times
+
+
+CRASH, HALF_RATE, LATE, MISSES, RESTART = ('crash', 'half rate', 'late 60 ms', 'misses inputs',
+                                           'restart')
+"""The kinds of faults of one component."""
+
+STALL, LOAD, STOP = 'stall after a crash', 'load after a crash', 'stop after a crash'
+"""Crashes that something else follows, which must not hide them."""
+
+AFTER_CRASH = (STALL, LOAD, STOP)
+
+SLOWER = '0.7 of the rate'  # a fault of one component that no gap alone shows
+
+OLD, LOSSES, OTHER, FLOOD, FAILS = ('old stamps', 'loses 30 %', 'new value', 'flood of log lines',
+                                    'fails more often')
+"""The kinds of faults of one component that what it says shows."""
+
+STARVED, SILENT = 'starved CPU', 'everything silent'  # the kinds of faults of the whole robot
+LONGEST_START_S = 90_000.0  # a start of the robot lasts no longer than this [s]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault of one component, or of the whole robot."""
+
+    # CRASH: it is silent. STALL: it is, and later the host stands still for 2 s. LOAD: instead,
+    # all messages wait for 2 s. STOP: instead, others that do not hear it or each other are
+    # silent, too. RESTART: it is silent, too; after the relief its timers have other phases.
+    # HALF_RATE: it leaves out every second message. SLOWER: its timers are slower, and it leaves
+    # out some answers. LATE: its answers to others come 60 ms later. MISSES: it answers nothing
+    # for a second, now and then. What answers to it suffers as it would. OLD: its stamps are 3 s
+    # older. LOSSES: 30 % of its messages never arrive. OTHER: its outputs say their other value.
+    # FLOOD: it logs 100 warnings a second. FAILS: four in five of its goals fail. STARVED: all
+    # messages wait, longer and longer within 20 s. SILENT: nobody sends. Empty: nothing is wrong.
+    kind: str
+    source: str  # the component; empty: the robot
+    onset_s: float  # from the beginning of the recording [s]
+    relief_s: float = LONGEST_START_S  # from there on all is well again [s]
+    # Of STALL, LOAD and STOP, when what follows the crash begins [s].
+    follows_s: float = LONGEST_START_S
+    others: Tuple[str, ...] = ()  # of STOP, the components that are silent then
+
+
+NOTHING = Fault('', '', LONGEST_START_S)
+
 
 LEAD_S = 10.0
 """A recording begins on a robot that has run for this long [s]; the longest answers fit into it.

@@ -9,13 +9,11 @@ from pathlib import Path
 from typing import Dict, Iterator, Sequence, Tuple
 
 from self_awareness_evaluation.live import recovery
-from self_awareness_evaluation.live.breaking import bursts
 from self_awareness_evaluation.live.follow_me import CRASH, HANG, FollowMe
-from self_awareness_evaluation.live.packaged_nodes import FAULTS
-from self_awareness_evaluation.live.packaged_system import PackagedSystem
+from self_awareness_evaluation.live.packaged import FAULTS, PackagedSystem
 from self_awareness_evaluation.live.processes import Processes
 from self_awareness_evaluation.live.results import AT_RANDOM, HANGS
-from self_awareness_evaluation.live.session import BAGS, EVENTS, Plan, Step
+from self_awareness_evaluation.live.session import BAGS, EVENTS, Plan, Step, bursts
 from self_awareness_evaluation.records import NORMAL, Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
 

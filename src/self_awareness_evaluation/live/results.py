@@ -9,11 +9,11 @@ from typing import Iterator, List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness.calibration import confidence
+from self_awareness_evaluation.figures import of_all, seconds, table
 from self_awareness_evaluation.live.follow_me import CRASH, HANG
 from self_awareness_evaluation.live.recovery import DELAY_S
 from self_awareness_evaluation.live.rows import MONITOR, RESTARTED, Row
 from self_awareness_evaluation.rows import AFTERMATH_S
-from self_awareness_evaluation.tables import of_all, seconds, table
 
 HANGS, AT_RANDOM = 1, 2  # rounds of a recovery: a node hangs again and again; faults at random
 MUST_BE_FOUND_S = 2.0  # a fault that lasts for longer is missed if there is no alarm [s]

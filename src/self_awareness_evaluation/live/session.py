@@ -1,7 +1,11 @@
 """One live session: recordings of a robot, a model, the monitor, and a plan of faults."""
 from __future__ import annotations
 
+import contextlib
 import os
+import random
+import signal
+import threading
 import time
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
@@ -14,14 +18,59 @@ import yaml
 from self_awareness import TrainedModel
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.training.robot_graph import graph_file
-from self_awareness_evaluation.live.breaking import broken_by
 from self_awareness_evaluation.live.listeners import MONITOR, MonitorListener
 from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, LiveError, Processes,
                                                       await_condition, becomes_true, say, wait)
 from self_awareness_evaluation.live.rows import Row, measure
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
+from self_awareness_follow_me import induction
+from self_awareness_follow_me.effects import Starvation
 from self_awareness_follow_me.induction import process_id
+
+_BURST_S = (0.2, 1.5)  # at least and at most
+_BETWEEN_BURSTS_S = 20.0  # on the average
+
+BUSY = Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)
+"""Four busy processes on every core take the machine."""
+
+
+@contextlib.contextmanager
+def broken_by(what: ContextManager[None]) -> Iterator[float]:
+    """Hand out since when something is broken that another with statement breaks and mends."""
+    with what:
+        yield time.time()
+
+
+@contextlib.contextmanager
+def stopped(pid: int) -> Iterator[float]:
+    """Stop a process; it goes on at the end, if it still is there."""
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        yield time.time()
+    finally:
+        with contextlib.suppress(ProcessLookupError):  # it was killed, as it hung
+            os.kill(pid, signal.SIGCONT)
+
+
+@contextlib.contextmanager
+def bursts(chance: random.Random) -> Iterator[float]:
+    """Let busy processes on all cores take the machine for a moment now and then."""
+    over = threading.Event()
+
+    def take() -> None:
+        while not over.wait(chance.expovariate(1.0 / _BETWEEN_BURSTS_S)):
+            with induction.starved(BUSY):
+                over.wait(chance.uniform(*_BURST_S))
+
+    thread = threading.Thread(target=take)
+    thread.start()
+    try:
+        yield time.time()
+    finally:
+        over.set()
+        thread.join()
+
 
 APART_S = 70.0
 """From the end of one bag to the beginning of the next one [s].

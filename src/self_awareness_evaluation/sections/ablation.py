@@ -4,14 +4,13 @@ from __future__ import annotations
 from typing import Dict, List, Sequence, Tuple
 
 from self_awareness import Tuning
-from self_awareness_evaluation.families.faults import (CRASH, HALF_RATE, LATE, MISSES, RESTART,
-                                                       SILENT, STARVED)
 from self_awareness_evaluation.families.protocol import DEATH, SELDOM
-from self_awareness_evaluation.figures import grouped
+from self_awareness_evaluation.families.scene import (CRASH, HALF_RATE, LATE, MISSES, RESTART,
+                                                      SILENT, STARVED)
+from self_awareness_evaluation.figures import NONE, Cell, cells, grouped, table
 from self_awareness_evaluation.outages import OUTAGE
-from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.pages import RESEARCH, Section
-from self_awareness_evaluation.tables import NONE, Cell, cells, table
+from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.variants import Variant
 
 NAME = 'ablation'

@@ -5,14 +5,14 @@ from dataclasses import replace
 from typing import Dict, List, Sequence
 
 from self_awareness.reporting.text import number_of
-from self_awareness_evaluation.families.faults import CRASH, FLOOD, LATE, OTHER, RESTART
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import KINDS, NEVER, TITLES
-from self_awareness_evaluation.figures import WITHIN_S, Found, Quiet, grouped, normal, of_fault
-from self_awareness_evaluation.rows import Row
+from self_awareness_evaluation.families.scene import CRASH, FLOOD, LATE, OTHER, RESTART
+from self_awareness_evaluation.figures import (NONE, WITHIN_S, Found, Quiet, grouped, interval,
+                                               normal, number, of_fault, part, percent, rate,
+                                               seconds, table)
 from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
-from self_awareness_evaluation.tables import (NONE, interval, number, part, percent, rate, seconds,
-                                              table)
+from self_awareness_evaluation.rows import Row
 
 NAME = 'families'
 TITLE = 'Robots of other kinds'  # above the section, on each page

@@ -3,13 +3,13 @@ from __future__ import annotations
 
 from typing import Callable, Dict, List, Sequence
 
-from self_awareness_evaluation.figures import Found, Quiet, grouped, median, normal, of_fault
+from self_awareness_evaluation.figures import (NONE, Found, Quiet, grouped, interval, median,
+                                               normal, number, of_fault, part, percent, rate,
+                                               seconds, share, table)
+from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
 from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.rows import Row
-from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
 from self_awareness_evaluation.simulated import WITHIN_S
-from self_awareness_evaluation.tables import (NONE, interval, number, part, percent, rate, seconds,
-                                              share, table)
 
 NAME = 'simulated'
 TITLE = 'The simulated robot'  # above the section, on each page

@@ -3,12 +3,11 @@ from __future__ import annotations
 
 from typing import List, Sequence
 
-from self_awareness_evaluation.figures import grouped
+from self_awareness_evaluation.figures import NONE, grouped, seconds, table
 from self_awareness_evaluation.outages import CASES, END, OUTAGE, Case, Span
+from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
 from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.rows import HOUR_S, Row
-from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
-from self_awareness_evaluation.tables import NONE, seconds, table
 
 NAME = 'recordings'
 

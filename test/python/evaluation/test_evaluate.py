@@ -11,11 +11,12 @@ from unittest.mock import patch
 import pytest
 
 from self_awareness import Tuning
-from self_awareness_evaluation import evaluate, row_files, simulated, tunings
-from self_awareness_evaluation.families.faults import CRASH
+from self_awareness_evaluation import evaluate, row_files, simulated
 from self_awareness_evaluation.families.protocol import Records, recorded
+from self_awareness_evaluation.families.scene import CRASH
 from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, REAL, Robot
 from self_awareness_evaluation.rows import Row, Subject
+from self_awareness_evaluation.variants import add_changes, change_of, tuning_of
 
 
 @pytest.fixture(name='written', scope='module')
@@ -118,8 +119,8 @@ CHANNELS = Tuning.channels()[:2]
 
 def asked(*arguments: str) -> Tuning:
     parser = argparse.ArgumentParser()
-    tunings.add(parser)
-    return tunings.tuning_of(tunings.of(parser.parse_args(arguments)))
+    add_changes(parser)
+    return tuning_of(change_of(parser.parse_args(arguments)))
 
 
 def test_numbers_are_set_and_channels_left_out() -> None:

@@ -10,14 +10,15 @@ import pytest
 
 from self_awareness import Tuning
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation import experiment, row_files, tunings, variants as frame
+from self_awareness_evaluation import experiment, row_files
+from self_awareness_evaluation import variants as frame
 from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.families.protocol import Records, recorded
 from self_awareness_evaluation.records import FAMILIES, NORMAL, FaultRecord, Learning, Robot
 from self_awareness_evaluation.row_files import KeptRows
 from self_awareness_evaluation.rows import Row
-from self_awareness_evaluation.variants import Variant, one_by_one, side_by_side
+from self_awareness_evaluation.variants import Variant, one_by_one, side_by_side, tuning_of
 
 from evaluation_robot import START, robot
 
@@ -39,7 +40,7 @@ def test_the_method_as_it_is_comes_first_then_channels_rules_and_numbers() -> No
         *(each.name for each in Tuning.numbers() if each.off is not None)]
     assert [variant.is_number for variant in found] == sorted(
         variant.is_number for variant in found)
-    methods = [tunings.tuning_of(variant.change) for variant in found]
+    methods = [tuning_of(variant.change) for variant in found]
     assert methods[0] == Tuning() and all(method != Tuning() for method in methods[1:])
     assert len({variant.change for variant in found}) == len(found)
 

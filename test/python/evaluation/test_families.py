@@ -7,16 +7,15 @@ import numpy as np
 import pytest
 
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.families.conditions import Conditions
 from self_awareness_evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
-from self_awareness_evaluation.families.faults import (CRASH, FAILS, FLOOD, HALF_RATE, LATE, LOAD,
-                                                       LOSSES, MISSES, NOTHING, OLD, OTHER,
-                                                       RESTART, SILENT, SLOWER, STALL, STARVED,
-                                                       STOP, Fault)
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import (DEATH, NEVER, RESTARTS_IN_S, SELDOM,
                                                          Records)
 from self_awareness_evaluation.families.robot import WARNING, Output, Robot
+from self_awareness_evaluation.families.scene import (CRASH, FAILS, FLOOD, HALF_RATE, LATE, LOAD,
+                                                      LOSSES, MISSES, NOTHING, OLD, OTHER, RESTART,
+                                                      SILENT, SLOWER, STALL, STARVED, STOP,
+                                                      Conditions, Fault)
 from self_awareness_evaluation.records import FaultRecord, Learning, WindowedEvents
 
 POINTS = 'sensor_msgs/PointCloud2'

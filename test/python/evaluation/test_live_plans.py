@@ -15,9 +15,9 @@ import rosbag
 import rosgraph
 import rosnode
 
-from self_awareness_evaluation.live import drivers, plans, session
+from self_awareness_evaluation.live import packaged, plans, session
 from self_awareness_evaluation.live.follow_me import CRASH, DOUBLE, HALF, HANG, FollowMe
-from self_awareness_evaluation.live.packaged_nodes import CAMERAS_HZ, FAULTS, HALF_RATE, NODES
+from self_awareness_evaluation.live.packaged import CAMERAS_HZ, FAULTS, HALF_RATE, NODES
 from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
                                                       free_port, unregister)
 from self_awareness_evaluation.live.rows import ERROR, Status
@@ -74,7 +74,7 @@ def test_names_are_unique_and_faults_are_of_nodes() -> None:
 
 
 def test_what_drivers_replay_is_made(tmp_path: Path) -> None:
-    drivers.write(tmp_path)
+    packaged.write_drivers(tmp_path)
     for node in NODES:
         assert not node.file or (tmp_path / node.file).exists()
         if node.package == 'rosbag':

@@ -9,16 +9,15 @@ from typing import Any, List, Optional
 import pytest
 
 from self_awareness import METHOD, Tuning
-from self_awareness_evaluation import evaluate, pages, tunings
-from self_awareness_evaluation.families.faults import CRASH, LATE, RESTART
-from self_awareness_evaluation.figures import rate_interval
+from self_awareness_evaluation import evaluate, pages
+from self_awareness_evaluation.families.scene import CRASH, LATE, RESTART
+from self_awareness_evaluation.figures import cells, rate_interval
 from self_awareness_evaluation.pages import RESEARCH, RESULTS
 from self_awareness_evaluation.readme_numbers import PAGE, SECTION, Number, cell, section
 from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, REAL
 from self_awareness_evaluation.rows import Row, Subject
 from self_awareness_evaluation.sections import ablation, families, own_robot, recordings
-from self_awareness_evaluation.tables import cells
-from self_awareness_evaluation.variants import Variant
+from self_awareness_evaluation.variants import Variant, number_set
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / 'docs'
@@ -188,8 +187,8 @@ def test_the_ablation_marks_what_differs() -> None:
     default = [row(FAMILIES), row(FAMILIES, CRASH, 0.25, True)]
     late = [row(FAMILIES), row(FAMILIES, CRASH, 7.0, False)]
     changes = {'': (False, default), 'without pairs': (False, default), 'x=0': (False, late),
-               tunings.told(number.name, number.most): (True, late),
-               tunings.told(same.name, same.most): (True, default)}
+               number_set(number.name, number.most): (True, late),
+               number_set(same.name, same.most): (True, default)}
     rows = [replace(each, subject=replace(each.subject, change=change))
             for change, (_, of_change) in changes.items() for each in of_change]
     rows.append(row(FAMILIES, change='x=0', refused='too short'))

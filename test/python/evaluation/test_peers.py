@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from evaluation_robot import START, robot
 
 from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS
@@ -11,6 +10,8 @@ from self_awareness_evaluation.peers import (SPAN, FrequencyMonitor, GapBounds, 
                                              messages_in_span)
 from self_awareness_evaluation.records import WindowedEvents
 from self_awareness_evaluation.variants import SYSTEMS, Variant
+
+from evaluation_robot import START, robot
 
 
 def steady(seconds: float, rate: float) -> WindowedEvents:

@@ -1,8 +1,26 @@
-"""Nodes of Debian packages, which nobody here wrote: what is started, and what is broken."""
+"""Nodes of Debian packages, which nobody here wrote: started, broken and mended."""
 from __future__ import annotations
 
+import contextlib
+import subprocess
+import time
 from dataclasses import dataclass
-from typing import Any, Dict, Tuple
+from pathlib import Path
+from typing import Any, ContextManager, Dict, Iterator, List, Sequence, Tuple
+
+import numpy as np
+import rosbag
+import rospy
+from geometry_msgs.msg import TwistStamped
+from matplotlib import image
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import (BatteryState, CameraInfo, Image, Imu, LaserScan, MagneticField,
+                             NavSatFix)
+
+from self_awareness_evaluation.live.listeners import heard
+from self_awareness_evaluation.live.processes import WARM_UP_S, Processes, unregister, wait
+from self_awareness_evaluation.live.session import BUSY, broken_by, stopped
+from self_awareness_follow_me import induction
 
 
 @dataclass(frozen=True)
@@ -15,7 +33,7 @@ class Node:
     arguments: Tuple[str, ...]  # to the program; remappings and private parameters included
     # On which it publishes all the time; those of a nodelet come from its manager.
     topics: Tuple[str, ...] = ()
-    file: str = ''  # of drivers.write, the last argument; empty: none
+    file: str = ''  # of write_drivers(), the last argument; empty: none
     manager: str = ''  # node into which it loads a nodelet; empty: none
 
 
@@ -167,3 +185,148 @@ PARAMETERS: Dict[str, Any] = {
         'computer': {'type': 'diagnostic_aggregator/GenericAnalyzer', 'path': 'computer',
                      'contains': ['CPU', 'RAM']}}}
 """What the nodes read from the parameter server."""
+
+_LENGTH_S = 60.0
+_JITTER = 0.02  # of the period, as one standard deviation
+_BEGIN_S = 1.0e9  # any time but 0
+_SEED = 1
+_WIDTH, _HEIGHT = 64, 48
+_FOCAL_LENGTH = 60.0  # pixels
+
+_RATE = 'publish_rate'  # of image_publisher
+_SERVICE_WITHIN_S = 10.0
+
+
+def write_drivers(folder: Path) -> None:
+    """Write everything into a folder that exists; it is the same every time."""
+    random = np.random.default_rng(_SEED)
+    for name, topics in _bags().items():
+        _write_bag(folder / f'{name}.bag', topics, random)
+    across, down = np.meshgrid(np.linspace(0.0, 1.0, _WIDTH), np.linspace(0.0, 1.0, _HEIGHT))
+    for name in CAMERAS_HZ:
+        image.imsave(str(folder / f'{name}.png'),
+                     np.dstack([across, down, (across + down > 1.0).astype(float)]))
+
+
+_Topics = Dict[Tuple[str, ...], Tuple[float, Tuple[Any, ...]]]
+"""The rate [Hz] and the messages of topics that are published at the same time."""
+
+
+def _bags() -> Dict[str, _Topics]:
+    info = CameraInfo(height=_HEIGHT, width=_WIDTH, distortion_model='plumb_bob', D=[0.0] * 5,
+                      K=[_FOCAL_LENGTH, 0, _WIDTH / 2, 0, _FOCAL_LENGTH, _HEIGHT / 2, 0, 0, 1],
+                      P=[_FOCAL_LENGTH, 0, _WIDTH / 2, 0, 0, _FOCAL_LENGTH, _HEIGHT / 2, 0,
+                         0, 0, 1, 0], R=[1, 0, 0, 0, 1, 0, 0, 0, 1])
+    info.header.frame_id = 'camera'
+    depth = Image(height=_HEIGHT, width=_WIDTH, encoding='16UC1', step=2 * _WIDTH,
+                  data=np.full((_HEIGHT, _WIDTH), 1500, dtype='<u2').tobytes())
+    depth.header.frame_id = 'camera'
+    odometry = Odometry(child_frame_id='base_link')
+    odometry.header.frame_id = 'odom'
+    odometry.pose.pose.orientation.w = 1.0
+    scan = LaserScan(angle_min=-1.5, angle_max=1.5, angle_increment=0.02, range_max=10.0,
+                     ranges=[2.0] * 151)
+    scan.header.frame_id = 'laser'
+    return {
+        'lidar': {('/scan',): (10.0, (scan,))},
+        'imu': {('/imu/data',): (50.0, (Imu(),)), ('/imu/mag',): (20.0, (MagneticField(),))},
+        'base': {('/odom',): (20.0, (odometry,)),
+                 ('/battery',): (1.0, (BatteryState(),))},
+        'gps': {('/fix', '/vel'): (5.0, (NavSatFix(), TwistStamped()))},
+        'depth_camera': {('/depth/image_raw', '/depth/camera_info'): (8.0, (depth, info))}}
+
+
+def _write_bag(path: Path, topics: _Topics, random: np.random.Generator) -> None:
+    with rosbag.Bag(str(path), 'w') as bag:
+        for names, (rate_hz, messages) in topics.items():
+            number = round(_LENGTH_S * rate_hz)
+            jitter = np.clip(random.normal(0.0, _JITTER, number), -0.2, 0.2)
+            for second in (np.arange(number) + 0.5 + jitter) / rate_hz:
+                stamp = rospy.Time.from_sec(_BEGIN_S + float(second))
+                for name, message in zip(names, messages):
+                    message.header.stamp = stamp
+                    bag.write(name, message, stamp)
+
+
+class PackagedSystem:
+    """All NODES as processes; `rospy.init_node` has been called."""
+
+    def __init__(self, folder: Path, processes: Processes) -> None:
+        """Start nothing yet; folder: for what drivers replay."""
+        write_drivers(folder)
+        self._folder = folder
+        self._processes = processes
+        self._running: Dict[str, subprocess.Popen] = {}
+
+    def start(self) -> None:
+        """Start all; wait until they have published on all their topics, or raise LiveError."""
+        for name, value in PARAMETERS.items():
+            rospy.set_param(name, value)
+        self._start(NODES)
+        wait(WARM_UP_S, 'warming up')
+
+    def end(self) -> None:
+        """End all nodes, the last one first: nodelets before their managers."""
+        self._end([node for node in NODES if node.name in self._running])
+
+    def broken(self, kind: str, node: str) -> ContextManager[float]:
+        """Return what induces a fault, hands out its onset [s since 1970], and undoes it.
+
+        Entering and leaving it raise:
+            LiveError: it cannot be induced, or the node does not publish again.
+        """
+        if kind == KILL:
+            return self._killed(node)
+        if kind == STOP:
+            return stopped(self._running[node].pid)
+        if kind == RESTART:
+            return self._restarted(node)
+        return _halved(node) if kind == HALF_RATE else broken_by(induction.starved(BUSY))
+
+    @contextlib.contextmanager
+    def _killed(self, name: str) -> Iterator[float]:
+        self._running[name].kill()
+        yield time.time()
+        self._restart(name)
+
+    @contextlib.contextmanager
+    def _restarted(self, name: str) -> Iterator[float]:
+        onset = time.time()
+        self._restart(name)
+        yield onset
+
+    def _restart(self, name: str) -> None:
+        """Start a node again, and those that load a nodelet into it: they end when it dies."""
+        nodes = [node for node in NODES if name in (node.name, node.manager)]
+        self._end(nodes)
+        self._start(nodes)
+
+    def _start(self, nodes: Sequence[Node]) -> None:
+        with heard([(f'/{node.name}', topic) for node in nodes for topic in node.topics]):
+            for node in nodes:
+                self._running[node.name] = self._processes.start(
+                    node.name.replace('/', '_'), *self._command(node))
+
+    def _end(self, nodes: Sequence[Node]) -> None:
+        for node in reversed(nodes):
+            self._processes.end(self._running.pop(node.name))
+        unregister([f'/{node.name}' for node in nodes])
+
+    def _command(self, node: Node) -> List[str]:
+        namespace, _, name = f'/{node.name}'.rpartition('/')
+        return ['rosrun', node.package, node.program, *node.arguments,
+                *([str(self._folder / node.file)] if node.file else []),
+                f'__name:={name}', f'__ns:={namespace or "/"}']
+
+
+@contextlib.contextmanager
+def _halved(name: str) -> Iterator[float]:
+    # Installed with the nodes; only here it is needed.
+    from dynamic_reconfigure.client import Client
+    client = Client(f'/{name}', timeout=_SERVICE_WITHIN_S)
+    try:
+        client.update_configuration({_RATE: CAMERAS_HZ[name] / 2.0})
+        yield time.time()
+    finally:
+        client.update_configuration({_RATE: CAMERAS_HZ[name]})
+        client.close()
