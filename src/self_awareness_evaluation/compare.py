@@ -1,17 +1,17 @@
 """Two versions of the detectors side by side, by what the same commands measured of each."""
 from __future__ import annotations
 
+import argparse
 import re
 from pathlib import Path
-from typing import Callable, Dict, List, Sequence
+from typing import Any, Callable, Dict, List, Sequence
 
-from self_awareness_evaluation import pages, row_files
+from self_awareness.output_files import replacing
+from self_awareness_evaluation import options, pages
 from self_awareness_evaluation.figures import NONE, cells, grouped, table
 from self_awareness_evaluation.pages import FULL, RESEARCH, written_by
 from self_awareness_evaluation.records import NORMAL
-from self_awareness_evaluation.rows import Row
-
-NAME = 'before_after'
+from self_awareness_evaluation.rows import Row, load
 
 _FOLDERS = re.compile(r' (-o|--output|--data)[ =]\S+')
 
@@ -29,12 +29,26 @@ half were found. False alarms and WARN are those without a fault, before onsets 
 _Rows = List[Row]
 
 
-def page(before: Path, after: Path, command: str) -> str:
-    """Return the page.
+def add(parts: Any) -> None:
+    """Add the command to the parts of the program."""
+    parser = parts.add_parser(
+        'compare', help='two versions side by side, by what the same commands measured',
+        description='Writes a page about two folders that families, simulated, ablation or '
+        'recordings wrote to with -o, in two versions of this package.')
+    parser.set_defaults(work=_compare)
+    options.add_output(parser, 'the page')
+    for name, told in (('before', 'of the one version'), ('after', 'of the other')):
+        parser.add_argument(name, type=Path, metavar=name.upper(),
+                            help=f'folder of the results {told}, or of folders with them')
+
+
+def _compare(arguments: argparse.Namespace, command: str) -> None:
+    """Write the page.
 
     Raises:
         ValueError: a folder holds no results, or the two were measured by other commands.
     """
+    before, after = arguments.before, arguments.after
     lines = [_INTRODUCTION.format(written=written_by(command))]
     names = _folders(before)
     missing = sorted(set(names) ^ set(_folders(after)))
@@ -50,10 +64,14 @@ def page(before: Path, after: Path, command: str) -> str:
                              f'{after / name} by "{differing[1]}"; run the same commands')
         lines += ['## Of the commands', '', *(f'    {each}' for each in commands[0]), '']
         for path in _files(before / name):
-            ours, theirs = (row_files.load(top / name / FULL / path, Row)
+            ours, theirs = (load(top / name / FULL / path, Row)
                             for top in (before, after))
             lines += [f'### {path}', '', *_section(ours, theirs), '']
-    return '\n'.join(lines)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    path = arguments.output / 'before_after.md'
+    with replacing(str(path)) as temporary:
+        Path(temporary).write_text('\n'.join(lines), encoding='utf-8')
+    print(f'written: {path}')
 
 
 def _folders(top: Path) -> List[str]:

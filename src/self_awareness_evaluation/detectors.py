@@ -11,9 +11,8 @@ from self_awareness import (DEFAULT_WINDOW, Alarm, DetectorParameters, EventType
                             fold_incidents, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
-from self_awareness_evaluation.records import WindowedEvents
-from self_awareness_evaluation.systems import (ALARM, FALSE_POSITIVE_RATE, Judged, SystemAlarm,
-                                               common_threshold)
+from self_awareness_evaluation.records import (ALARM, FALSE_POSITIVE_RATE, Judged, SystemAlarm,
+                                               WindowedEvents, common_threshold)
 
 
 class Paper:

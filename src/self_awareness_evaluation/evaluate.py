@@ -2,15 +2,37 @@
 from __future__ import annotations
 
 import argparse
+import re
 import shlex
 import sys
 from pathlib import Path
-from typing import Optional, Sequence
+from typing import NamedTuple, Optional, Sequence
 
 from self_awareness.commands import cli
-from self_awareness.output_files import replacing
-from self_awareness_evaluation import compare, offline, options, pages, readme_numbers
+from self_awareness_evaluation import compare, offline, options, pages, sections
 from self_awareness_evaluation.live import command as live
+
+SECTION = 'measured'  # the README's section with the numbers that were measured
+PAGE = f'evaluation/{pages.RESEARCH}'  # whose tables have them, from the folder of all pages
+
+
+class Number(NamedTuple):
+    """A row of the README's table: what it is in words, and the heading above the table, the first
+    cell of the row and the column of its cell."""
+
+    what: str
+    heading: str
+    row: str
+    column: str
+
+
+NUMBERS = [
+    *(Number(what, sections.OWN_TITLE, fault, 'evidence')
+      for fault, what in sections.TOLD.items()),
+    Number(sections.FALSE_ALARMS, sections.OWN_TITLE, sections.FALSE_ALARMS, 'evidence'),
+    Number('the same, on robots of other kinds, learned from 4 starts', sections.FAMILIES_TITLE,
+           sections.ALL, 'false alarms/h, 4 starts'),
+]
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -20,13 +42,28 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     return cli.run(parser(), lambda arguments: arguments.work(arguments, command), argv)
 
 
-def _compare(arguments: argparse.Namespace, command: str) -> None:
-    text = compare.page(arguments.before, arguments.after, command)
-    arguments.output.mkdir(parents=True, exist_ok=True)
-    path = arguments.output / f'{compare.NAME}.md'
-    with replacing(str(path)) as temporary:
-        Path(temporary).write_text(text, encoding='utf-8')
-    print(f'written: {path}')
+def measured(docs: Path) -> str:
+    """Return the README's section: what was measured, as the page says it."""
+    page = (docs / PAGE).read_text(encoding='utf-8')
+    return '\n'.join(['| what | runs with an alarm, median time to it |', '|---|---|',
+                      *(f'| {each.what} | {cell(page, each)} |' for each in NUMBERS)])
+
+
+def cell(page: str, number: Number) -> str:
+    """Return a cell of the first table below a heading of a page; raise ValueError without one."""
+    _, found, below = page.partition(f'\n## {number.heading}\n')
+    if not found:
+        raise ValueError(f'{PAGE}: no heading {number.heading!r}')
+    table = re.search(r'^\|.*(\n\|.*)*', below, re.MULTILINE)
+    head, *body = ([each.strip() for each in line.strip('|').split('|')]
+                   for line in (table[0] if table else '').split('\n'))
+    if number.column not in head:
+        raise ValueError(f'{PAGE}: no column {number.column!r} in the table of '
+                         f'{number.heading!r}')
+    for row in body:
+        if row[0] == number.row:
+            return row[head.index(number.column)]
+    raise ValueError(f'{PAGE}: no row {number.row!r} in the table of {number.heading!r}')
 
 
 def _pages(arguments: argparse.Namespace, _: str) -> None:
@@ -34,8 +71,7 @@ def _pages(arguments: argparse.Namespace, _: str) -> None:
 
 
 def _numbers(arguments: argparse.Namespace, _: str) -> None:
-    pages.write_section(arguments.readme, readme_numbers.SECTION,
-                        readme_numbers.section(arguments.docs))
+    pages.write_section(arguments.readme, SECTION, measured(arguments.docs))
     print(f'written: {arguments.readme}')
 
 
@@ -45,27 +81,18 @@ def parser() -> argparse.ArgumentParser:
         prog='evaluate', description=__doc__.split(': ', 1)[1])
     parts = parser.add_subparsers(metavar='PART', required=True)
     offline.add(parts)
-    compared = parts.add_parser(
-        'compare', help='two versions side by side, by what the same commands measured',
-        description='Writes a page about two folders that families, simulated, ablation or '
-        'recordings wrote to with -o, in two versions of this package.')
-    compared.set_defaults(work=_compare)
-    options.add_output(compared, 'the page')
-    for name, told in (('before', 'of the one version'), ('after', 'of the other')):
-        compared.add_argument(name, type=Path, metavar=name.upper(),
-                              help=f'folder of the results {told}, or of folders with them')
+    compare.add(parts)
     live.add(parts)
     listed = parts.add_parser(
         'pages', help='which pages were measured with an older method',
         description='Lists the pages that a measurement wrote, with the version of the method, '
         'and the command that measures those of an older method again.')
-    listed.set_defaults(work=_pages)
     numbers = parts.add_parser(
         'numbers', help='copy the numbers of the README out of these pages',
         description='Writes the measured numbers of the README again. They are cells of the '
-        'tables of the pages; src/self_awareness_evaluation/readme_numbers.py says which.')
-    numbers.set_defaults(work=_numbers)
-    for each in (listed, numbers):
+        'tables of the pages; src/self_awareness_evaluation/evaluate.py says which.')
+    for each, work in ((listed, _pages), (numbers, _numbers)):
+        each.set_defaults(work=work)
         options.add(each, '--docs', Path, Path('docs'), 'DIR', 'folder of the pages')
     options.add(numbers, '--readme', Path, Path('README.md'), 'FILE', 'the README')
     return parser

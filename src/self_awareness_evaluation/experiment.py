@@ -1,17 +1,22 @@
 """Lets variants learn from robots and judge their records, and keeps the rows."""
 from __future__ import annotations
 
+import csv
+import os
+import zlib
 from contextlib import closing
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
+from self_awareness import METHOD, Tuning, _core
 from self_awareness.calibration.limits import TooLittleError
+from self_awareness.output_files import replacing
 from self_awareness.workers import Processes
-from self_awareness_evaluation.records import NORMAL, FaultRecord, Learning, Robot, WindowedEvents
-from self_awareness_evaluation.row_files import KeptRows
-from self_awareness_evaluation.rows import Row, Subject, fault_row, normal_row
-from self_awareness_evaluation.systems import System
+from self_awareness_evaluation.records import (NORMAL, FaultRecord, Learning, Robot, System,
+                                               WindowedEvents)
+from self_awareness_evaluation.rows import (Row, Subject, fault_row, flat, load, normal_row,
+                                            save)
 from self_awareness_evaluation.variants import Variant
 
 AT_ONCE = 16
@@ -117,3 +122,67 @@ def _judges(unit: Unit, robot: Robot) -> Iterator[_Judge]:
         except TooLittleError as error:
             judge = replace(judge, refused=str(error))
         yield judge
+
+
+class KeptRows:
+    """Rows in a CSV file, and beside it a file of what they are of, and how much is whole.
+
+    Args:
+        path: of the CSV file; what it holds already is kept.
+        plan: what decides on the rows, besides their subjects.
+
+    Raises:
+        ValueError: it holds rows of another plan or of another method, or is another file.
+    """
+
+    def __init__(self, path: Path, plan: str) -> None:
+        self._path = path
+        self._beside = path.with_suffix('.plan')
+        self._plan = f'{_method()}\n{plan}\n'
+        self._rows: Dict[Subject, List[Row]] = {}
+        if path.is_file():
+            self._check()
+        else:
+            save(path, [], Row)
+        self._remember(load(path, Row))
+
+    def has(self, subject: Subject) -> bool:
+        """Return whether all rows of a subject are there."""
+        return subject in self._rows
+
+    def of(self, subjects: Sequence[Subject]) -> List[Row]:
+        """Return the rows of subjects, in the order of these."""
+        return [row for subject in subjects for row in self._rows[subject]]
+
+    def add(self, rows: Sequence[Row]) -> None:
+        """Add all rows of some subjects."""
+        with open(self._path, 'a', encoding='utf-8', newline='') as file:
+            csv.writer(file, lineterminator='\n').writerows(
+                flat(row).values() for row in rows)
+            file.flush()
+            os.fsync(file.fileno())
+        self._remember(rows)
+
+    def _check(self) -> None:
+        """Check the plan, and cut off what an interrupted run left half written."""
+        told = self._beside.read_text(encoding='utf-8') if self._beside.is_file() else ''
+        size, _, plan = told.partition('\n')
+        if plan != self._plan or not size.isdigit():
+            raise ValueError(f'{self._path}: of another plan, or of another build of the method; '
+                             'remove it or choose another --output')
+        os.truncate(self._path, int(size))
+
+    def _remember(self, rows: Sequence[Row]) -> None:
+        """Note rows that the file has, and that it is whole."""
+        for row in rows:
+            self._rows.setdefault(row.subject, []).append(row)
+        with replacing(str(self._beside)) as temporary:
+            Path(temporary).write_text(f'{self._path.stat().st_size}\n{self._plan}',
+                                       encoding='utf-8')
+
+
+def _method() -> str:
+    """Return what tells one method from another: version, numbers, and how it was built."""
+    numbers = [f'{number.name}={number.default:g}' for number in Tuning.numbers()]
+    build = zlib.crc32(Path(_core.__file__).read_bytes())
+    return f'method {METHOD}, build {build:08x}: {" ".join([*Tuning.channels(), *numbers])}'

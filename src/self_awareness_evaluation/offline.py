@@ -11,16 +11,15 @@ from typing import Any, Callable, Iterable, List, Optional, Sequence, Tuple
 from self_awareness import Tuning
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
-from self_awareness_evaluation import experiment, options, outages, pages, simulated
+from self_awareness_evaluation import experiment, options, outages, pages, sections, simulated
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.families.kinds import FAMILIES
-from self_awareness_evaluation.families.protocol import AFTER_DEATH_S, KINDS, check_hours, recorded
+from self_awareness_evaluation.families.protocol import (AFTER_DEATH_S, KINDS, MOST_STARTS,
+                                                         check_hours, recorded)
 from self_awareness_evaluation.pages import FULL, Section
 from self_awareness_evaluation.records import OWN, REAL, Learning
 from self_awareness_evaluation.records import FAMILIES as OF_FAMILIES
 from self_awareness_evaluation.rows import Row
-from self_awareness_evaluation.sections import ablation, families, own_robot
-from self_awareness_evaluation.sections import recordings as real
 from self_awareness_evaluation.variants import (EVIDENCE, SYSTEMS, Variant, add_changes, change_of,
                                                 one_by_one, side_by_side)
 from self_awareness_follow_me.faults import effect_of
@@ -32,7 +31,6 @@ _OF_ABLATION = ('timers', 'wireless', 'jittery', 'wander', 'day_night', 'stalled
                 'driving_docked', 'events_only', 'bursty')
 _WARNED_ONLY = ('extra', 'unknown', 'unsubscribed')  # a suspicion, no alarm
 _AFTER_DEATH_S = 600.0  # of the ablation, which judges many times
-_OWN_CALIBRATION_S = 600.0
 
 
 def add(parts: Any) -> None:
@@ -45,8 +43,6 @@ def add(parts: Any) -> None:
     options.add(parser, '--seeds', cli.count, 20, 'N',
                 'number of repetitions, each with the next seed')
     options.add(parser, '--seed', int, 1, 'N', 'the first seed')
-    options.add(parser, '--calibration', options.recorded_s, _OWN_CALIBRATION_S, 'S', 'length of '
-                'the record that the threshold is chosen by [s]; the paper has 100')
     _add_systems(parser, SYSTEMS)
     parser.add_argument('--faults', nargs='+', metavar='FAULT',
                         help='kinds of faults (default: all, and every regular component crashed '
@@ -57,7 +53,7 @@ def add(parts: Any) -> None:
         description='Every system learns from few starts of each robot and from many, watches '
         'hours of normal operation in others, and judges every component\'s faults.')
     _add_robots(parser, _families, tuple(FAMILIES), '--robots', 3, 2.0)
-    options.add(parser, '--budgets', options.budget, [BUDGET], 'B', 'false alarms an hour that '
+    options.add(parser, '--budgets', cli.budget, [BUDGET], 'B', 'false alarms an hour that '
                 'limits are made for, in turn; faults are judged with the first')
     _add_systems(parser, _OF_FAMILIES)
     parser.add_argument('--faults', nargs='*', choices=_FAULTS, default=_FAULTS, metavar='FAULT',
@@ -111,9 +107,9 @@ def _add_robots(parser: argparse.ArgumentParser, work: Callable[[argparse.Namesp
                         f'(default: {" ".join(names)})')
     options.add(parser, number, cli.count, robots_each, 'N',
                 'robots of each family, each with the next seed')
-    options.add_seed(parser)
-    options.add(parser, '--starts', options.starts, [2, 4], 'N', 'starts to train on, in turn'
-                f'{in_turn}; half as many, but one at least, are calibrated on')
+    options.add(parser, '--seed', cli.count, 1, 'N', 'the first seed')
+    options.add(parser, '--starts', partial(cli.count, most=MOST_STARTS), [2, 4], 'N', 'starts to '
+                f'train on, in turn{in_turn}; half as many, but one at least, are calibrated on')
     for name, what in (('--training', 'train'), ('--calibration', 'calibrate')):
         options.add(parser, name, options.recorded_s, 150.0, 'S',
                     f'length of a recording to {what} on [s]')
@@ -134,9 +130,8 @@ def _simulated(arguments: argparse.Namespace, command: str) -> None:
     for kind in faults:
         effect_of(scenario, kind)
     seeds = range(arguments.seed, arguments.seed + arguments.seeds)
-    learning = simulated.own_learning(arguments.calibration)
-    units = _own(seeds, faults, _variants(arguments, [learning]))
-    _measure(own_robot.NAME, units, f'faults {faults}', arguments, command, own_robot.section)
+    units = _own(seeds, faults, _variants(arguments, [simulated.LEARNING]))
+    _measure('simulated', units, f'faults {faults}', arguments, command, sections.simulated)
 
 
 def _families(arguments: argparse.Namespace, command: str) -> None:
@@ -146,12 +141,13 @@ def _families(arguments: argparse.Namespace, command: str) -> None:
     variants = _variants(arguments, _learnings(arguments), arguments.budgets)
     units = [_robot(family, seed, amount, variants) for family in arguments.families
              for seed in range(arguments.seed, arguments.seed + arguments.robots)]
-    _measure(families.NAME, units, str(amount), arguments, command, families.section)
+    _measure('families', units, str(amount), arguments, command, sections.families)
 
 
 def _recordings(arguments: argparse.Namespace, command: str) -> None:
     variants = side_by_side(list(outages.SYSTEMS), [None], change_of(arguments))
-    _measure(real.NAME, _real(arguments.data, variants), '', arguments, command, real.section)
+    _measure('recordings', _real(arguments.data, variants), '', arguments, command,
+             sections.recordings)
 
 
 def _ablation(arguments: argparse.Namespace, command: str) -> None:
@@ -161,7 +157,7 @@ def _ablation(arguments: argparse.Namespace, command: str) -> None:
     own_faults = tuple(kind for kind in simulated.default_faults(load_scenario())
                        if kind.split(':')[0] not in _WARNED_ONLY)
     units = _own(range(arguments.seed, arguments.seed + arguments.own_seeds), own_faults,
-                 _learned(variants, simulated.own_learning(_OWN_CALIBRATION_S)))
+                 _learned(variants, simulated.LEARNING))
     learnings = _learnings(arguments)
     units += [_robot(family, arguments.seed + shift, amount,
                      _learned(variants, learnings[(turn + shift) % len(learnings)]))
@@ -169,8 +165,8 @@ def _ablation(arguments: argparse.Namespace, command: str) -> None:
               for turn, family in enumerate(arguments.families)]
     if arguments.data is not None:
         units += _real(arguments.data, variants)
-    _measure(ablation.NAME, units, f'{amount}, own robot {own_faults}', arguments, command,
-             partial(ablation.section, variants=variants))
+    _measure('ablation', units, f'{amount}, own robot {own_faults}', arguments, command,
+             partial(sections.ablation, variants=variants))
 
 
 def _measure(name: str, units: Sequence[Unit], plan: str, arguments: argparse.Namespace,

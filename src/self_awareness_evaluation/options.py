@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any, Callable, Dict
 
 from self_awareness.commands import cli
-from self_awareness_evaluation.families.protocol import MOST_STARTS
 
 Parser = argparse.ArgumentParser
 
@@ -27,16 +26,10 @@ def add_output(parser: Parser, written: str, default: str = 'docs/evaluation') -
                         help=f'where {written} go (default: {default})')
 
 
-def add_seed(parser: Parser, told: str = 'the first seed') -> None:
-    """Add the option that decides what is random; told: what it is of."""
-    add(parser, '--seed', cli.count, 1, 'N', told)
-
-
-def within(least: float, most: float, what: str,
-           kind: Callable[[str], Any] = float) -> Callable[[str], Any]:
+def within(least: float, most: float, what: str) -> Callable[[str], float]:
     """Return an argument type: a number of something in a range."""
-    def convert(text: str) -> Any:
-        value = kind(text)
+    def convert(text: str) -> float:
+        value = float(text)
         if not least <= value <= most:
             raise ValueError(f'expected {what} from {least:g} to {most:g}, not {text}')
         return value
@@ -44,8 +37,5 @@ def within(least: float, most: float, what: str,
 
 
 recorded_s = within(10.0, 86400.0, 'seconds')  # argument type: length of a recording [s]
-starts = within(1, MOST_STARTS, 'starts', int)  # argument type: starts to train on
 hours = within(0.02, 1000.0, 'hours')  # argument type: how long something is watched [h]
 minutes = within(1.2, 60_000.0, 'minutes')  # argument type: how long something is watched [min]
-budget = within(0.001, 1000.0, 'false alarms an hour')
-"""Argument type: false alarms an hour that limits are made for."""

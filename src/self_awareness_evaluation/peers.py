@@ -21,9 +21,8 @@ import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, EventType
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.records import WindowedEvents, stamps_by
-from self_awareness_evaluation.systems import (FALSE_POSITIVE_RATE, Judged, common_threshold,
-                                               persistent, settling)
+from self_awareness_evaluation.records import (FALSE_POSITIVE_RATE, Judged, WindowedEvents,
+                                               common_threshold, persistent, settling, stamps_by)
 
 SPAN = 5 * SECOND_NS
 """Length of the time over which messages are counted [ns]: 5 updates, once a second."""
@@ -147,29 +146,24 @@ class FrequencyMonitor(Peer):
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the periodic topics and their bounds."""
         by_topic = [self.learned(recording) for recording in recordings]
+        full = []
+        for recording in recordings:
+            ends = recording.starts() + DEFAULT_WINDOW
+            full.append(ends[(ends - SPAN >= recording.stamps[0]) & (ends <= recording.end)])
         for topic in self._sources:
             stamps = [of_recording.get(topic, _NEVER) for of_recording in by_topic]
             gaps = np.concatenate([np.diff(part) for part in stamps])
-            if len(gaps) >= _FEWEST_GAPS and gaps.std() <= _PERIODIC * gaps.mean():
-                bounds = self._bounds_of(recordings, stamps)
-                if bounds.fewest > 0:
-                    self.bounds[topic] = bounds
+            if len(gaps) < _FEWEST_GAPS or gaps.std() > _PERIODIC * gaps.mean():
+                continue
+            counts = np.concatenate(list(map(messages_in_span, stamps, full)))
+            if len(counts) and counts.min() > 1:
+                self.bounds[topic] = Bounds(counts.min() - 1, counts.max() + 1)
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose the threshold by the common rule."""
         self.threshold = common_threshold(
             [self.scores(recording)[~settling(recording)] for recording in recordings],
             self._rate)
-
-    @staticmethod
-    def _bounds_of(recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray]) -> Bounds:
-        found = []
-        for recording, part in zip(recordings, stamps):
-            ends = recording.starts() + DEFAULT_WINDOW
-            full = (ends - SPAN >= recording.stamps[0]) & (ends <= recording.end)
-            found.append(messages_in_span(part, ends[full]))
-        counts = np.concatenate(found)
-        return Bounds(counts.min() - 1, counts.max() + 1) if len(counts) else Bounds(0, 0)
 
 
 class GapBounds(NamedTuple):

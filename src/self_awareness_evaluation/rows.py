@@ -1,21 +1,32 @@
-"""What a system says of one record: a row of the results, the same for all records and systems."""
+"""What a system says of one record: a row of the results, the same for all records and systems.
+
+Rows are kept in CSV files, for other programs, too.
+"""
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Optional, Sequence, Tuple
+import csv
+from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
+from pathlib import Path
+from typing import (Any, Dict, List, Optional, Sequence, Tuple, Type, TypeVar, Union, get_args,
+                    get_origin, get_type_hints)
 
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW
+from self_awareness.output_files import save_table
 from self_awareness.stamps import SECOND_NS, nanoseconds
-from self_awareness_evaluation.records import NORMAL, REAL, FaultRecord
-from self_awareness_evaluation.systems import ALARM, EXCUSES, Judged, SystemAlarm
+from self_awareness_evaluation.records import (ALARM, EXCUSES, NORMAL, REAL, FaultRecord, Judged,
+                                               SystemAlarm)
 
 AFTERMATH_S = 5.0
 """An alarm that is raised so soon after the fault is over belongs to it: a node that comes back is
 no normal operation yet [s]."""
 
 HOUR_S = 3600.0
+
+_BETWEEN = '; '  # texts in one cell
+
+_Row = TypeVar('_Row')
 
 
 @dataclass(frozen=True)
@@ -110,11 +121,12 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged,
         after = len(judged.alarms) - len(alarms)
     alarm = first_alarm(alarms, onset)
     row = replace(
-        row, after=after,
-        stood_before=any(each.stands_at(onset) for each in judged.alarms),
-        latency_s=None if alarm is None else (alarm.start - onset) / SECOND_NS,
-        noticed_s=_noticed_s(judged, onset), first=_names(alarm, record, 1),
-        among_three=_names(alarm, record, 3), bystanders=_bystanders(alarm, record))
+        row, after=after, noticed_s=_noticed_s(judged, onset),
+        stood_before=any(each.stands_at(onset) for each in judged.alarms))
+    if alarm is not None:
+        row = replace(row, latency_s=(alarm.start - onset) / SECOND_NS)
+        if alarm.suspects is not None:
+            row = _named(row, alarm.suspects, record)
     return at_end(row, [*judged.alarms, *judged.suspicions], onset, record.ends)
 
 
@@ -161,18 +173,88 @@ def _noticed_s(judged: Judged, onset: int) -> Optional[float]:
     return (int(first[0]) - onset) / SECOND_NS if len(first) else None
 
 
-def _names(alarm: Optional[SystemAlarm], record: FaultRecord, among: int) -> Optional[bool]:
-    """Return whether an alarm names a culprit among the first so many; None: see Row."""
-    if alarm is None or alarm.suspects is None or not record.culprits:
-        return None
-    return bool(set(alarm.suspects[:among]) & set(record.culprits))
-
-
-def _bystanders(alarm: Optional[SystemAlarm], record: FaultRecord) -> Optional[int]:
-    if alarm is None or alarm.suspects is None or record.involved is None:
-        return None
-    return len(set(alarm.suspects) - record.involved)
+def _named(row: Row, suspects: Sequence[str], record: FaultRecord) -> Row:
+    """Return the row with whom an alarm names."""
+    if record.culprits:
+        guilty = [suspect in record.culprits for suspect in suspects]
+        row = replace(row, first=any(guilty[:1]), among_three=any(guilty[:3]))
+    return row if record.involved is None else replace(
+        row, bystanders=len(set(suspects) - record.involved))
 
 
 def _hours(windows: np.ndarray) -> float:
     return int(windows.sum()) * DEFAULT_WINDOW / SECOND_NS / HOUR_S
+
+
+def columns(row_type: type) -> List[str]:
+    """Return the columns of a dataclass: its fields, those of a field that is one itself, too."""
+    hints = get_type_hints(row_type)
+    return [name for field in fields(row_type) for kind in [hints[field.name]]
+            for name in (columns(kind) if is_dataclass(kind) else [field.name])]
+
+
+def flat(row: Any) -> Dict[str, Any]:
+    """Return a row by column; tuples become one text."""
+    found: Dict[str, Any] = {}
+    for field in fields(row):
+        value = getattr(row, field.name)
+        if is_dataclass(value):
+            found.update(flat(value))
+        else:
+            found[field.name] = _BETWEEN.join(value) if isinstance(value, tuple) else value
+    return found
+
+
+def save(path: Path, rows: Sequence[_Row], row_type: Type[_Row]) -> None:
+    """Write rows, a whole file or none."""
+    save_table(str(path), columns(row_type), [list(flat(row).values()) for row in rows])
+
+
+def load(path: Path, row_type: Type[_Row]) -> List[_Row]:
+    """Read what save() wrote. Columns that are not known are skipped.
+
+    Raises:
+        ValueError: it is not such a table; names the file and the line.
+    """
+    with open(path, encoding='utf-8', newline='') as file:
+        reader = csv.DictReader(file)
+        rows = []
+        for cells in reader:
+            try:
+                rows.append(_row(cells, row_type))
+            except ValueError as error:
+                raise ValueError(f'{path}, line {reader.line_num}: {error}') from None
+    return rows
+
+
+def _row(cells: Dict[str, str], row_type: Type[_Row]) -> _Row:
+    hints = get_type_hints(row_type)
+    dataclass_type: Any = row_type
+    return row_type(**{field.name: _field(cells, field, hints[field.name])
+                       for field in fields(dataclass_type)})
+
+
+def _field(cells: Dict[str, str], field: Field, kind: Any) -> Any:
+    if is_dataclass(kind) and isinstance(kind, type):
+        return _row(cells, kind)
+    text = cells.get(field.name)
+    if text is None:
+        if field.default is MISSING:
+            raise ValueError(f'there is no {field.name}')
+        return field.default
+    return _parsed(field.name, text, kind)
+
+
+def _parsed(name: str, text: str, kind: Any) -> Any:
+    if get_origin(kind) is Union:  # Optional
+        return _parsed(name, text, get_args(kind)[0]) if text else None
+    if get_origin(kind) is tuple:
+        return tuple(text.split(_BETWEEN)) if text else ()
+    if kind is bool:
+        if text not in ('True', 'False'):
+            raise ValueError(f'{name} is {text!r}, not True or False')
+        return text == 'True'
+    try:
+        return kind(text)
+    except ValueError:
+        raise ValueError(f'{name} is {text!r}, no number') from None

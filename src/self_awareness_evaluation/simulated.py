@@ -16,8 +16,8 @@ import numpy as np
 
 from self_awareness import EncodingRules, read_events
 from self_awareness.stamps import nanoseconds
-from self_awareness_evaluation.records import (NORMAL, FaultRecord, Learning, Robot,
-                                               Subscriptions, WindowedEvents)
+from self_awareness_evaluation.records import (NORMAL, FaultRecord, Learning, Robot, Subscriptions,
+                                               WindowedEvents)
 from self_awareness_follow_me.effects import Change
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import Scenario, load_scenario
@@ -41,6 +41,9 @@ WITHIN_S: Dict[str, float] = {
     'unsubscribed:navigation': 65.0,  # it is a finding after a minute
 }
 """Faults that neither silence nor timing tells, and the time in which they are to be found [s]."""
+
+LEARNING = Learning(len(TRAINING_NAMES), RECORD_S, 1, 600.0)
+"""What is learned from: as in the paper, but for the calibration, which has 100 s there."""
 
 # For how long records with a fault go on, at least, after its onset [s].
 _GOES_ON_S = {'lossy:camera': 150.0,  # of 7.5 images a second, 0.075 are lost
@@ -74,11 +77,6 @@ def own(seed: int, faults: Sequence[str]) -> Robot:
         lambda learning: [normal(CALIBRATION_NAME, learning.calibration_s)],
         lambda: [normal(NORMAL, NORMAL_TEST_S)],
         lambda: (fault_record(scenario, seed, kind) for kind in faults))
-
-
-def own_learning(calibration_s: float) -> Learning:
-    """Return what is learned from it: as in the paper, but for the calibration [s]."""
-    return Learning(len(TRAINING_NAMES), RECORD_S, 1, calibration_s)
 
 
 def graph_of(scenario: Scenario) -> Set[Tuple[str, str, str]]:

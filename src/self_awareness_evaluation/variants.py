@@ -11,8 +11,7 @@ from self_awareness.calibration import limits
 from self_awareness.commands import cli
 from self_awareness_evaluation.detectors import Evidence, Paper
 from self_awareness_evaluation.peers import FrequencyMonitor, GapMonitor
-from self_awareness_evaluation.records import Learning
-from self_awareness_evaluation.systems import System
+from self_awareness_evaluation.records import Learning, System
 
 EVIDENCE = ('evidence', 'evidence_no_graph')
 """The evidence detector, with the graph of the robot and without."""

@@ -11,10 +11,11 @@ from typing import Any, Iterator, List, Optional, Sequence
 
 from self_awareness import progress
 from self_awareness.commands import cli
-from self_awareness_evaluation import options, row_files
+from self_awareness_evaluation import options
 from self_awareness_evaluation.live.rows import Row
 from self_awareness_evaluation.pages import RESULTS, machine, write_section, written_by
 from self_awareness_evaluation.records import Learning
+from self_awareness_evaluation.rows import save
 
 RELIABILITY = 'reliability/README.md'  # the page of soak and recovery, in the folder of the pages
 
@@ -46,7 +47,7 @@ def add(parts: Any) -> None:
         'if an alarm comes without one, or if the memory of the monitor grows. scripts/soak.sh '
         'runs this.')
     _add_minutes(soak, '--minutes', 60.0, 'how long the monitor runs')
-    options.add_seed(soak, 'of the faults and the robot')
+    options.add(soak, '--seed', cli.count, 1, 'N', 'of the faults and the robot')
     _add_session(soak, 'soak', Learning(4, 90.0, 4, 120.0), 'docs', RELIABILITY)
 
     recovery = parts.add_parser(
@@ -56,7 +57,7 @@ def add(parts: Any) -> None:
         'scripts/recovery.sh runs this.')
     options.add(recovery, '--times', cli.count, 20, 'N', 'that the laser driver hangs')
     _add_minutes(recovery, '--minutes', 60.0, 'of faults at random after that')
-    options.add_seed(recovery, 'of the faults and the robot')
+    options.add(recovery, '--seed', cli.count, 1, 'N', 'of the faults and the robot')
     _add_session(recovery, 'recovery', Learning(2, 90.0, 1, 90.0), 'docs', RELIABILITY)
 
 
@@ -89,8 +90,9 @@ def _run(arguments: argparse.Namespace, command: str) -> None:
 
     def keep(row: Row) -> None:
         rows.append(row)
-        row_files.save(path, rows, Row)
-        progress.say(f'  {row.brief}')
+        save(path, rows, Row)
+        progress.say('  ' + ' '.join(filter(None, (
+            row.fault, row.node, row.void, row.said, row.note))))
 
     for number in (signal.SIGINT, signal.SIGTERM):
         # A termination cleans up like Ctrl-C, which shells let be ignored in the background.

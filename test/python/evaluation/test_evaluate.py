@@ -11,11 +11,11 @@ from unittest.mock import patch
 import pytest
 
 from self_awareness import Tuning
-from self_awareness_evaluation import evaluate, row_files, simulated
+from self_awareness_evaluation import evaluate, simulated
 from self_awareness_evaluation.families.protocol import Records, recorded
 from self_awareness_evaluation.families.scene import CRASH
 from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, REAL, Robot
-from self_awareness_evaluation.rows import Row, Subject
+from self_awareness_evaluation.rows import Row, Subject, load, save
 from self_awareness_evaluation.variants import add_changes, change_of, tuning_of
 
 
@@ -27,16 +27,17 @@ def _written(tmp_path_factory: pytest.TempPathFactory) -> Path:
         '--starts', '1', '2', '--training', '60', '--calibration', '60', '--hours', '0.1',
         '--systems', 'evidence', 'gaps', '--budgets', '0.5', '5', '--faults', 'crash', 'late',
         '--jobs', '2', '-o', str(folder)]) == 0
-    with patch.object(simulated, 'NORMAL_TEST_S', 60.0):
+    with patch.object(simulated, 'NORMAL_TEST_S', 60.0), patch.object(
+            simulated, 'LEARNING', replace(simulated.LEARNING, calibration_s=60.0)):
         assert evaluate.main([
             'simulated', '--seeds', '1', '--seed', '5', '--systems', 'paper', 'frequency_learned',
-            '--faults', 'cc1', 'crash:slam', '--calibration', '60', '--jobs', '2',
+            '--faults', 'cc1', 'crash:slam', '--jobs', '2',
             '-o', str(folder)]) == 0
     return folder
 
 
 def test_there_is_a_row_for_everything(written: Path) -> None:
-    rows = row_files.load(written / 'full' / 'simulated.csv', Row)
+    rows = load(written / 'full' / 'simulated.csv', Row)
     assert [(row.fault, row.subject.system) for row in rows] == [
         (fault, system) for fault in ('normal', 'cc1', 'crash:slam')
         for system in ('paper', 'frequency_learned')]
@@ -49,7 +50,7 @@ def test_there_is_a_row_for_everything(written: Path) -> None:
 
 
 def test_the_rows_of_families(written: Path) -> None:
-    rows = row_files.load(written / 'full' / 'families.csv', Row)
+    rows = load(written / 'full' / 'families.csv', Row)
     crashes = [row for row in rows if row.subject.robot == 'small 3' and row.fault == CRASH
                and row.subject.system == 'gaps' and row.subject.learning.startswith('2')]
     assert [row.source for row in crashes] == Records('small', 3).robot.regular
@@ -87,18 +88,18 @@ def test_an_ablation_judges_each_robot_by_every_variant(tmp_path: Path,
                  '--faults', '1', '--channels', 'overdue', '--numbers', '--jobs', '2',
                  '-o', str(tmp_path)]
     assert evaluate.main(arguments) == 0
-    rows = row_files.load(tmp_path / 'full' / 'ablation.csv', Row)
+    rows = load(tmp_path / 'full' / 'ablation.csv', Row)
     assert {(row.subject.robot, row.subject.change) for row in rows} == {
         (robot, change) for robot in ('own robot 3', 'events_only 3')
         for change in ('', 'without overdue')}
     assert '| without overdue |' in (tmp_path / 'research.md').read_text(encoding='utf-8')
     assert evaluate.main(arguments) == 0  # all is done already
-    assert row_files.load(tmp_path / 'full' / 'ablation.csv', Row) == rows
+    assert load(tmp_path / 'full' / 'ablation.csv', Row) == rows
 
 
 @pytest.mark.parametrize('wrong', [
     ['simulated', '--faults', 'flood'], ['simulated', '--seeds', '0'],
-    ['simulated', '--jobs', '0'], ['simulated', '--calibration', '5'],
+    ['simulated', '--jobs', '0'], ['families', '--calibration', '5'],
     ['simulated', '--systems', 'oracle'], ['families', '--families', 'cars'],
     ['families', '--starts', '0'], ['families', '--starts', '17'], ['families', '--hours', '0'],
     ['families', '--budgets', '0'], ['families', '--faults', 'rust'],
@@ -178,7 +179,7 @@ def write(folder: Path, families: List[Row], own: List[Row],
           command: str = 'evaluate families --hours 2') -> None:
     (folder / 'full').mkdir(parents=True)
     for name, rows in (('families', families), ('simulated', own), ('recordings', OF_REAL)):
-        row_files.save(folder / 'full' / f'{name}.csv', rows, Row)
+        save(folder / 'full' / f'{name}.csv', rows, Row)
     (folder / 'research.md').write_text(
         f'# Page\n\nWritten by `{command} -o {folder}`; do not edit.\n', encoding='utf-8')
 

@@ -8,12 +8,11 @@ import pytest
 
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation import evaluate, outages, row_files
+from self_awareness_evaluation import evaluate, outages
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.outages import Case, JudgedCase, Span
-from self_awareness_evaluation.records import NORMAL, REAL
-from self_awareness_evaluation.rows import HOUR_S, Row
-from self_awareness_evaluation.systems import SystemAlarm
+from self_awareness_evaluation.records import NORMAL, REAL, SystemAlarm
+from self_awareness_evaluation.rows import HOUR_S, Row, load
 from self_awareness_evaluation.variants import Variant
 
 FIRST = 1_600_000_000 * SECOND_NS
@@ -64,7 +63,7 @@ def test_every_case_and_system_has_a_row(shared: Path, tmp_path: Path, monkeypat
     monkeypatch.chdir(shared)
     output = tmp_path / 'out'
     assert evaluate.main(['recordings', '--data', 'data', '-o', str(output)]) == 0
-    rows = row_files.load(output / 'full' / 'recordings.csv', Row)
+    rows = load(output / 'full' / 'recordings.csv', Row)
     assert ([(row.subject.robot, row.subject.system) for row in rows if row.fault == NORMAL]
             == [(case.name, system) for case in outages.CASES
                 for system in ('evidence', 'paper', 'frequency_learned')])

@@ -2,15 +2,15 @@
 from __future__ import annotations
 
 import numpy as np
-from evaluation_robot import BATTERY, LASER, START, robot
 
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, EventType, Learner, PaperModel
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.detectors import Paper
-from self_awareness_evaluation.records import WindowedEvents, stamps_by
+from self_awareness_evaluation.records import WindowedEvents, persistent, settling, stamps_by
 from self_awareness_evaluation.simulated import fault_record, graph_of, normal_record
-from self_awareness_evaluation.systems import persistent, settling
 from self_awareness_follow_me.scenario import load_scenario
+
+from evaluation_robot import BATTERY, LASER, START, robot
 
 
 def test_windows_and_counts_are_those_of_the_detector() -> None:

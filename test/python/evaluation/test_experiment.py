@@ -10,13 +10,12 @@ import pytest
 
 from self_awareness import Tuning
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation import experiment, row_files
+from self_awareness_evaluation import experiment
 from self_awareness_evaluation import variants as frame
 from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.families.protocol import Records, recorded
 from self_awareness_evaluation.records import FAMILIES, NORMAL, FaultRecord, Learning, Robot
-from self_awareness_evaluation.row_files import KeptRows
 from self_awareness_evaluation.rows import Row
 from self_awareness_evaluation.variants import Variant, one_by_one, side_by_side, tuning_of
 
@@ -156,14 +155,14 @@ def test_an_interrupted_run_goes_on(tmp_path: Path) -> None:
 def test_rows_of_another_plan_or_method_are_refused(tmp_path: Path,
                                                     monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / 'rows.csv'
-    KeptRows(path, 'plan').add([])
-    KeptRows(path, 'plan')
+    experiment.KeptRows(path, 'plan').add([])
+    experiment.KeptRows(path, 'plan')
     with pytest.raises(ValueError, match='rows.csv: of another plan'):
-        KeptRows(path, 'other')
-    monkeypatch.setattr(row_files, '_method', lambda: 'another method')
+        experiment.KeptRows(path, 'other')
+    monkeypatch.setattr(experiment, '_method', lambda: 'another method')
     with pytest.raises(ValueError, match='another build of the method; remove it'):
-        KeptRows(path, 'plan')
+        experiment.KeptRows(path, 'plan')
     monkeypatch.undo()
     path.with_suffix('.plan').unlink()
     with pytest.raises(ValueError, match='rows.csv: of another plan'):
-        KeptRows(path, 'plan')
+        experiment.KeptRows(path, 'plan')

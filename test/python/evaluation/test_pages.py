@@ -10,13 +10,13 @@ import pytest
 
 from self_awareness import METHOD, Tuning
 from self_awareness_evaluation import evaluate, pages
+from self_awareness_evaluation.evaluate import PAGE, SECTION, Number, cell, measured
 from self_awareness_evaluation.families.scene import CRASH, LATE, RESTART
 from self_awareness_evaluation.figures import cells, rate_interval
 from self_awareness_evaluation.pages import RESEARCH, RESULTS
-from self_awareness_evaluation.readme_numbers import PAGE, SECTION, Number, cell, section
 from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, REAL
 from self_awareness_evaluation.rows import Row, Subject
-from self_awareness_evaluation.sections import ablation, families, own_robot, recordings
+from self_awareness_evaluation.sections import ablation, families, recordings, simulated
 from self_awareness_evaluation.variants import Variant, number_set
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -34,7 +34,7 @@ def _readme() -> str:
 def test_the_numbers_of_the_readme_are_those_of_the_pages() -> None:
     """`rosrun self_awareness evaluate numbers` writes them again."""
     found = re.search(f'<!-- {SECTION} -->\n(.*?)\n<!-- /{SECTION} -->', _readme(), re.DOTALL)
-    assert found is not None and found[1] == section(DOCS)
+    assert found is not None and found[1] == measured(DOCS)
 
 
 def test_the_readme_has_no_other_number_that_could_be_measured() -> None:
@@ -45,7 +45,7 @@ def test_the_readme_has_no_other_number_that_could_be_measured() -> None:
         assert phrase in text, f'{GIVEN.name}: not in the README: {phrase}'
         text = text.replace(phrase, '')
     others: List[str] = re.findall(r'^.*\d.*$', text, re.MULTILINE)
-    assert others == [], 'measured: name its cell in readme_numbers.py; else, in ' + GIVEN.name
+    assert others == [], 'measured: name its cell in evaluate.py; else, in ' + GIVEN.name
 
 
 @pytest.mark.parametrize('change, error', [
@@ -126,7 +126,7 @@ def test_the_own_robot() -> None:
             row(OWN, 'extra', None, noticed_s=0.1), row(OWN, 'silence', 2.0, source=''),
             *(row(OWN, each, system='paper') for each in (
                 NORMAL, 'cc1', 'crash:motors', 'extra', 'silence'))]
-    section = own_robot.section(rows)
+    section = simulated(rows)
     research, results = section.pages[RESEARCH], section.pages[RESULTS]
     for line in ('| fault | evidence | paper |', '| cc1 | 100 %, 0.20 s | – |',
                  '| crash:motors | – | – |', '| silence | 100 %, 2.00 s | – |',
@@ -146,7 +146,7 @@ def test_the_families() -> None:
             row(FAMILIES, CRASH), row(FAMILIES, LATE, 0.1, True),
             row(FAMILIES, RESTART, 0.4, True, after=0), row(FAMILIES, RESTART, after=3),
             row(FAMILIES, system='gaps', alarms=1)]
-    section = families.section(rows)
+    section = families(rows)
     low, high = rate_interval([(12, 2.0), (0, 2.0)])
     told = f'3 ({low:.2g} to {high:.0f})'
     research = section.pages[RESEARCH]
@@ -171,14 +171,14 @@ def test_the_recordings() -> None:
     rows = [of_case(NORMAL, hours=0.01, alarms=1, standing_hours=0.001),
             of_case('outage', latency_s=0.9, level='ERROR', kind='silent', culprit='/a'),
             of_case(NORMAL, 'paper', hours=0.01), of_case('outage', 'paper', stood_before=True)]
-    section = recordings.section(rows)
+    section = recordings(rows)
     evidence = ('| wheeled, 1 | evidence | 5 | found | 0.90 s | ERROR, silent, /a | 1 '
                 '| 3.6 of 36.0 s |')
     assert evidence in section.pages[RESULTS] and evidence in section.pages[RESEARCH]
     assert ('| wheeled, 1 | paper | 5 | found, stood before | – | – | 0 | 0.0 of 36.0 s |'
             in section.pages[RESEARCH])
-    refused = recordings.section([of_case(NORMAL, refused='too short'),
-                                  of_case('outage', refused='too short')])
+    refused = recordings([of_case(NORMAL, refused='too short'),
+                          of_case('outage', refused='too short')])
     assert '| wheeled, 1 | evidence | – | too short | – | – | – | – |' in refused.pages[RESULTS]
 
 
@@ -194,7 +194,7 @@ def test_the_ablation_marks_what_differs() -> None:
     rows.append(row(FAMILIES, change='x=0', refused='too short'))
     variants = [Variant('evidence', change=change, is_number=is_number)
                 for change, (is_number, _) in changes.items()]
-    lines = ablation.section(rows, variants).pages[RESEARCH]
+    lines = ablation(rows, variants).pages[RESEARCH]
     nothing = ' | '.join('–' * 11)
     for told in ('as it is', 'without pairs'):
         assert (f'| {told} | 0 in 2.0 h | 0 | 1 / 1 of 1, 0.25 s | {nothing} | 1 of 1 | 1 of 1 |'
@@ -218,7 +218,7 @@ def test_sections_are_put_in_their_place(tmp_path: Path) -> None:
     readme = tmp_path / RESULTS
     readme.write_text('# Mine\n\n<!-- families -->\nold\n<!-- /families -->\n\nMore.\n')
     rows = [row(FAMILIES), row(FAMILIES, CRASH, 0.4, True)]
-    written = pages.write(tmp_path, families.section(rows), rows, 'evaluate families')
+    written = pages.write(tmp_path, families(rows), rows, 'evaluate families')
     assert [path.name for path in written] == ['families.csv', 'families.csv', RESULTS, RESEARCH]
     text = readme.read_text(encoding='utf-8')
     assert text.startswith('# Mine\n\n<!-- families -->\nWritten by `evaluate families`')

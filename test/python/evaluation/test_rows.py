@@ -11,12 +11,12 @@ import pytest
 
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import confidence
-from self_awareness_evaluation import row_files
 from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.figures import Found, Quiet, rate_interval
-from self_awareness_evaluation.records import NORMAL, FaultRecord, Learning, WindowedEvents
-from self_awareness_evaluation.rows import Row, Subject, fault_row, normal_row
-from self_awareness_evaluation.systems import SUSPICION, Judged, SystemAlarm
+from self_awareness_evaluation.records import (NORMAL, SUSPICION, FaultRecord, Judged, Learning,
+                                               SystemAlarm, WindowedEvents)
+from self_awareness_evaluation.rows import (Row, Subject, fault_row, load, normal_row,
+                                            save)
 
 from evaluation_robot import START, robot
 
@@ -153,14 +153,14 @@ def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:
     rows = [row(alarms=2, evidence=('a', 'b'), expected=0.25),
             row(fault='crash', source='/a', first=True, latency_s=0.5, level='ERROR'),
             row(refused='too short, or so')]
-    row_files.save(path, rows, Row)
-    assert row_files.load(path, Row) == rows
+    save(path, rows, Row)
+    assert load(path, Row) == rows
     for text, why in (('part,robot\na,b\n', 'there is no learning'),
                       ('part,robot,learning,system,fault,alarms\na,b,c,d,e,many\n',
                        "alarms is 'many', no number")):
         path.write_text(text, encoding='utf-8')
         with pytest.raises(ValueError, match=f'rows.csv, line 2: {why}'):
-            row_files.load(path, Row)
+            load(path, Row)
 
 
 def test_robots_that_differ_widen_the_interval() -> None:

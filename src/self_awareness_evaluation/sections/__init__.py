@@ -1,1 +1,0 @@
-"""What pages say of rows: a section for each measurement."""
