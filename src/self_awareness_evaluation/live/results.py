@@ -12,7 +12,7 @@ from self_awareness.calibration import confidence
 from self_awareness_evaluation.figures import of_all, seconds, table
 from self_awareness_evaluation.live.follow_me import CRASH, HANG
 from self_awareness_evaluation.live.recovery import DELAY_S
-from self_awareness_evaluation.live.rows import MONITOR, RESTARTED, Row
+from self_awareness_evaluation.live.rows import RESTARTED, Row
 from self_awareness_evaluation.rows import AFTERMATH_S
 
 HANGS, AT_RANDOM = 1, 2  # rounds of a recovery: a node hangs again and again; faults at random
@@ -30,7 +30,6 @@ Told = Tuple[List[str], List[str]]  # the lines of a page, and what was not as i
 
 def of_faults(rows: Sequence[Row]) -> Told:
     """Return a line on all faults that count, and one on each kind of normal operation."""
-    rows = [row for row in rows if row.system == MONITOR]
     quiet = [row for row in rows if row.is_normal]
     faults = [row for row in rows if row.is_fault and not row.void]
     named = [row.first for row in faults if row.first is not None]

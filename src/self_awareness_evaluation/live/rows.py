@@ -6,8 +6,6 @@ import math
 from dataclasses import dataclass, replace
 from typing import List, NamedTuple, Optional, Sequence, Tuple
 
-MONITOR = 'evidence'  # the system that listened: the monitor, by its detector
-
 RESTARTED = 'restarted by the recovery'
 """The fault of a row that tells of a node that the recovery has restarted."""
 
@@ -54,7 +52,6 @@ class Row:
 
     fault: str  # its name; of normal operation: what that is called; or RESTARTED
     node: str  # that is broken, several with a space between; empty: none, or the whole machine
-    system: str = MONITOR  # that judged
     round: int = 1  # number, from 1 on
     onset: float = 0.0  # [s since 1970]
     lasted_s: float = 0.0  # time until it was undone; of normal operation: time that was judged
@@ -110,16 +107,6 @@ class Row:
     def end(self) -> float:
         """When all was as before [s since 1970]."""
         return self.onset + (self.lasted_s if self.recovered_s is None else self.recovered_s)
-
-    @property
-    def brief(self) -> str:
-        """The row for people who watch the session."""
-        if self.is_normal:
-            return (f'{self.fault}, {self.lasted_s:.0f} s: alarms: {self.alarms}, suspicions: '
-                    f'{self.suspicions}; {self.said} {self.note}')
-        return f'{self.fault} {self.node}' + (
-            f': {self.void or self.latency_s}, suspicion {self.suspicion_s}, cleared '
-            f'{self.cleared_s}; {self.said} {self.note}' if self.is_fault else '')
 
 
 def measure(row: Row, statuses: Sequence[Status], incidents: Sequence[Incident] = ()) -> Row:
