@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple, Optional, Sequence
 
 from self_awareness.commands import cli
-from self_awareness_evaluation import compare, offline, options, pages, sections
+from self_awareness_evaluation import offline, options, pages, sections
 from self_awareness_evaluation.live import command as live
 
 SECTION = 'measured'  # the README's section with the numbers that were measured
@@ -81,7 +81,7 @@ def parser() -> argparse.ArgumentParser:
         prog='evaluate', description=__doc__.split(': ', 1)[1])
     parts = parser.add_subparsers(metavar='PART', required=True)
     offline.add(parts)
-    compare.add(parts)
+    pages.add_compare(parts)
     live.add(parts)
     listed = parts.add_parser(
         'pages', help='which pages were measured with an older method',

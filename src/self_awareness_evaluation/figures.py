@@ -15,6 +15,9 @@ _Key = TypeVar('_Key')
 
 SOON_S, WITHIN_S = 5.0, (1.0, 5.0, 50.0)  # times in which faults are to be found [s]
 
+NONE = '–'  # what a table says where there is nothing to tell
+LEAST_LATENCY_S = 0.05  # medians that differ by less are told as the same [s]
+
 _NOTHING: Interval = (math.nan, math.nan)
 
 
@@ -184,7 +187,8 @@ def columns(rows: Sequence[Row], kinds: Sequence[str]) -> Dict[str, Any]:
     for kind in kinds:
         found.update({f'{kind}: {name}': value for name, value in
                       _of_kind(Found.of(of_fault(rows, kind))).items()})
-    return {name: _short(value) for name, value in found.items()}
+    return {name: value if not isinstance(value, float) else
+            f'{value:.4g}' if math.isfinite(value) else '' for name, value in found.items()}
 
 
 def _of_kind(found: Found) -> Dict[str, Any]:
@@ -195,12 +199,6 @@ def _of_kind(found: Found) -> Dict[str, Any]:
             'among_three': part_of(found.among_three), 'at_end': part_of(found.at_end),
             'bystanders': found.bystanders[0],
             'stood_before': found.stood_before, 'alarms_after': found.after[0]}
-
-
-def _short(value: Any) -> Any:
-    if not isinstance(value, float):
-        return value
-    return f'{value:.4g}' if math.isfinite(value) else ''
 
 
 def _counted(values: Iterable[Optional[bool]]) -> Tuple[int, int]:
@@ -215,12 +213,6 @@ def _or_never(value: Optional[float]) -> float:
 def _mean(values: Sequence[Optional[float]]) -> float:
     known = [value for value in values if value is not None]
     return sum(known) / len(known) if known else math.nan
-
-
-NONE = '–'  # what a table says where there is nothing to tell
-LEAST_LATENCY_S = 0.05  # medians that differ by less are told as the same [s]
-
-OTHER = 'other faults'
 
 
 def table(head: Sequence[str], body: Sequence[Sequence[str]]) -> List[str]:
@@ -296,8 +288,9 @@ def cells(rows: Sequence[Row], kinds: Mapping[str, Sequence[str]]) -> Dict[str, 
     known = [kind for names in kinds.values() for kind in names]
     by_title = {title: [row for kind in names for row in of_fault(rows, kind)]
                 for title, names in kinds.items()}
-    by_title[OTHER] = [row for row in of_fault(rows, '')
-                       if not {row.fault, row.fault.partition(':')[0]} & set(known)]
+    by_title['other faults'] = [
+        row for row in of_fault(rows, '')
+        if not {row.fault, row.fault.partition(':')[0]} & set(known)]
     for title, of_title in by_title.items():
         each = Found.of(of_title)
         median = f', {seconds(each.median_s)}' if math.isfinite(each.median_s) else ''

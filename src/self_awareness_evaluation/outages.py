@@ -17,11 +17,10 @@ from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
-from self_awareness_evaluation.detectors import Paper, judged_of
 from self_awareness_evaluation.experiment import Unit
-from self_awareness_evaluation.peers import FrequencyMonitor
 from self_awareness_evaluation.records import NORMAL, System, SystemAlarm, WindowedEvents
 from self_awareness_evaluation.rows import HOUR_S, Row, Subject, at_end
+from self_awareness_evaluation.systems import FrequencyMonitor, Paper, judged_of
 from self_awareness_evaluation.variants import tuning_of
 
 OUTAGE = 'outage'  # kind of fault: what is wrong in a recording of a real robot

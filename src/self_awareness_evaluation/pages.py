@@ -1,6 +1,8 @@
-"""Pages with sections that commands write: what, where, and with which version of the method."""
+"""Pages that commands write: their sections, with which version of the method, and two versions of
+it side by side."""
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import platform
@@ -11,8 +13,10 @@ from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 from self_awareness import METHOD
 from self_awareness.output_files import replacing, save_table
-from self_awareness_evaluation.figures import columns, grouped
-from self_awareness_evaluation.rows import NORMAL, Row
+from self_awareness_evaluation import options
+from self_awareness_evaluation.figures import NONE, cells, columns, grouped, table
+from self_awareness_evaluation.records import NORMAL
+from self_awareness_evaluation.rows import Row, load
 
 RESULTS, RESEARCH = 'README.md', 'research.md'
 """The page that is read in two minutes, and the one for who wants to know more."""
@@ -23,6 +27,18 @@ FULL = 'full'
 
 _WRITTEN = re.compile(r'^Written by `(?P<command>.+?)`( on [\d-]+)?'
                       r'(, method (?P<method>\d+))?; do not edit', re.MULTILINE)
+_FOLDERS = re.compile(r' (-o|--output|--data)[ =]\S+')
+
+_INTRODUCTION = """\
+# Before and after
+
+{written}
+
+What two versions of the detector say of the same records: same commands, same seeds. A cell with
+one value is the same in both; else it is before → **after**. Counts are of records: found within
+5 s, and at all; the time is the median latency of all of them, and is left out where fewer than
+half were found. False alarms and WARN are those without a fault, before onsets included.
+"""
 
 
 def machine() -> Dict[str, Any]:
@@ -140,3 +156,107 @@ def check(docs: Path) -> List[str]:
     return [f'{"old" if each.is_old else "ok "}  {each.page}: '
             + ('an older method' if each.method is None else f'method {each.method}')
             + (f'; measure it again: {each.command}' if each.is_old else '') for each in found]
+
+
+def add_compare(parts: Any) -> None:
+    """Add the command `compare` to the parts of the program."""
+    parser = parts.add_parser(
+        'compare', help='two versions side by side, by what the same commands measured',
+        description='Writes a page about two folders that families, simulated, ablation or '
+        'recordings wrote to with -o, in two versions of this package.')
+    parser.set_defaults(work=_compare)
+    options.add_output(parser, 'the page')
+    for name, told in (('before', 'of the one version'), ('after', 'of the other')):
+        parser.add_argument(name, type=Path, metavar=name.upper(),
+                            help=f'folder of the results {told}, or of folders with them')
+
+
+def _compare(arguments: argparse.Namespace, command: str) -> None:
+    """Write the page.
+
+    Raises:
+        ValueError: a folder holds no results, or the two were measured by other commands.
+    """
+    before, after = arguments.before, arguments.after
+    lines = [_INTRODUCTION.format(written=written_by(command))]
+    names = _folders(before)
+    missing = sorted(set(names) ^ set(_folders(after)))
+    if missing:
+        raise ValueError(f'{missing[0]}: only one of {before} and {after} has results there; '
+                         'run the same commands for both')
+    for name in names:
+        commands = [_commands(top / name) for top in (before, after)]
+        if commands[0] != commands[1]:
+            differing = next(pair for pair in zip([*commands[0], ''], [*commands[1], ''])
+                             if pair[0] != pair[1])
+            raise ValueError(f'{before / name} was written by "{differing[0]}", and '
+                             f'{after / name} by "{differing[1]}"; run the same commands')
+        lines += ['## Of the commands', '', *(f'    {each}' for each in commands[0]), '']
+        for path in _files(before / name):
+            ours, theirs = (load(top / name / FULL / path, Row)
+                            for top in (before, after))
+            lines += [f'### {path}', '', *_section(ours, theirs), '']
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    path = arguments.output / 'before_after.md'
+    with replacing(str(path)) as temporary:
+        Path(temporary).write_text('\n'.join(lines), encoding='utf-8')
+    print(f'written: {path}')
+
+
+def _folders(top: Path) -> List[str]:
+    """Return the folder and those in it that hold rows, as paths from it."""
+    found = [name for name in ('.', *sorted(path.name for path in top.iterdir() if path.is_dir()))
+             if _files(top / name)]
+    if not found:
+        raise ValueError(f'{top}: holds no results; name a folder that `evaluate families`, '
+                         '`simulated`, `ablation` or `recordings` wrote to (-o)')
+    return found
+
+
+def _files(folder: Path) -> List[str]:
+    return sorted(path.name for path in (folder / FULL).glob('*.csv'))
+
+
+def _commands(folder: Path) -> List[str]:
+    text = (folder / RESEARCH).read_text(encoding='utf-8')
+    return [_FOLDERS.sub('', each.command) for each in written(text)]
+
+
+def _section(before: List[Row], after: List[Row]) -> List[str]:
+    """Return the lines of two files of rows: all together, and each family."""
+    ours, theirs = (grouped(rows, lambda row: (row.subject, row.fault, row.source))
+                    for rows in (before, after))  # a run that went on has another order
+    same = sum(one == other for key in ours for one, other in zip(ours[key], theirs.get(key, [])))
+    lines = [f'Rows that are the same to the last digit: {same} of '
+             f'{max(len(before), len(after))}.', '']
+    names = list(dict.fromkeys(row.fault for row in [*before, *after] if row.fault != NORMAL))
+    kinds = {name: [name] for name in [*names, *(['crash'] if any(
+        name.startswith('crash:') for name in names) else [])]}
+    columns = _compared(before, after, kinds, lambda _: '')
+    head, *body = ([column[row] for column in columns] for row in range(1, len(columns[0])))
+    lines += table(head, body)
+    if len({row.subject.family for row in before}) > 1:
+        head, *body = _compared(before, after, kinds, lambda row: row.subject.family)
+        lines += ['', *table(head, body)]
+    return lines
+
+
+def _compared(before: List[Row], after: List[Row], kinds: Dict[str, List[str]],
+              group: Callable[[Row], str]) -> List[List[str]]:
+    """Return a row of titles, and one for the records of each group and for who judged them."""
+    def judged_by(row: Row) -> Tuple[str, str]:
+        subject = row.subject
+        told = (subject.system, subject.change, subject.learning,
+                '' if subject.budget is None else f'budget {subject.budget:g}')
+        return group(row), ', '.join(filter(None, told))
+
+    sides = [{key: cells(of_key, kinds) for key, of_key in grouped(rows, judged_by).items()}
+             for rows in (before, after)]
+    keys = list(dict.fromkeys([*sides[0], *sides[1]]))
+    titles = [title for title in next(iter(sides[0].values()))
+              if any(side[key][title].text != NONE for side in sides for key in side)]
+    body = [[[side[key][title].text if key in side else NONE for side in sides]
+             for title in titles] for key in keys]
+    return [['records', 'judged by', *titles], *(
+        [*key, *(one if one == other else f'{one} → **{other}**' for one, other in row)]
+        for key, row in zip(keys, body))]

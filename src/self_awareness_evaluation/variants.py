@@ -9,9 +9,8 @@ from typing import AbstractSet, Callable, Dict, Iterator, List, Optional, Sequen
 from self_awareness import Tuning, TuningNumber
 from self_awareness.calibration import limits
 from self_awareness.commands import cli
-from self_awareness_evaluation.detectors import Evidence, Paper
-from self_awareness_evaluation.peers import FrequencyMonitor, GapMonitor
 from self_awareness_evaluation.records import Learning, System
+from self_awareness_evaluation.systems import Evidence, FrequencyMonitor, GapMonitor, Paper
 
 EVIDENCE = ('evidence', 'evidence_no_graph')
 """The evidence detector, with the graph of the robot and without."""

@@ -46,7 +46,7 @@ class Emission:
 class Timer(Emission):
     """Sends by a timer, whose phase is another one with every start."""
 
-    period_s: float  # from tick to tick [s]
+    period_s: float = 1.0  # from tick to tick [s]
     # Standard deviation of the time by which messages come after the tick [s].
     jitter_s: float = 0.0003
     # Standard deviation of the gaps over the period; they add up. 0: exact ticks.

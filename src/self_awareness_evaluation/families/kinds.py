@@ -19,15 +19,13 @@ _SHORTEST_ANSWER_S, _LONGEST_ANSWER_S = 0.003, 0.04
 MOST_OF_PERIOD = 0.4  # an answer takes no longer, so that its component keeps up
 _COPY_S = 0.0005
 
-
-@dataclass(frozen=True)
-class Timing:
-    """How the timers of a robot keep time; see Timer. Each clock is off by up to `ppm`."""
-
-    variation: float = 0.0
-    ppm: float = 0.0
-    wander: float = 0.0
-    loops: bool = False
+_TRANSFORMS = 'tf2_msgs/TFMessage'
+_DIAGNOSTICS = 'diagnostic_msgs/DiagnosticArray'
+_TEMPERATURE = 'sensor_msgs/Temperature'
+_RESULT = 'move_base_msgs/MoveBaseActionResult[status.status='
+_FAILS = 1.0 / 12.0  # of the goals, in normal operation
+_HOLE_S = 6.0
+_HEAD_OR_TAIL_S = (6.0, 20.0)
 
 
 class Draft:
@@ -36,8 +34,9 @@ class Draft:
     def __init__(self, seed: int) -> None:
         self.seed = seed
         self.rng = np.random.default_rng(seed)
-        self.timing = Timing()
-        """Of all timers that are added from now on."""
+        self.timing = Timer()
+        """What timers that are added from now on are like: clocks differ by up to its `ppm`, and
+        half of them loop if it does."""
         self.namespace = ''
         """Put before all names that are added from now on, like `/robot1`."""
         self.conditions = Conditions()
@@ -64,11 +63,10 @@ class Draft:
 
     def add_timer(self, name: str, rate_hz: float, topic: str = 'data', activity: str = '') -> int:
         """Add an output with a timer."""
-        timing = self.timing
-        ppm = self._clocks.setdefault(name, self.rng.uniform(-timing.ppm, timing.ppm))
-        return self.add(name, topic, 'sensor_msgs/PointCloud2', Timer(
-            1.0 / rate_hz, variation=timing.variation, ppm=ppm, wander=timing.wander,
-            loop=timing.loops and self.rng.uniform() < 0.5, activity=activity))
+        ppm = self._clocks.setdefault(name, self.rng.uniform(-self.timing.ppm, self.timing.ppm))
+        return self.add(name, topic, 'sensor_msgs/PointCloud2', replace(
+            self.timing, period_s=1.0 / rate_hz, ppm=ppm, activity=activity,
+            loop=self.timing.loop and self.rng.uniform() < 0.5))
 
     def add_answer(self, name: str, trigger: int, longest_s: float, topic: str = 'result',
                    activity: str = '', every: int = 1, share: float = 1.0) -> int:
@@ -85,13 +83,11 @@ class Draft:
             self.add(name, f'{self.outputs[index].topic.rsplit("/", 1)[-1]}_info{copy}',
                      'sensor_msgs/CameraInfo', Answer(index, _COPY_S * (copy + 1), 0.3))
 
-    def add_chain(self, name: str, begin: int, rate_hz: float, length: int) -> List[int]:
-        """Add components that answer each to the one before, and return their outputs."""
-        chain = []
+    def add_chain(self, name: str, begin: int, rate_hz: float, length: int) -> int:
+        """Add components that answer each to the one before, and return the last one's output."""
         for link in range(length):
             begin = self.add_answer(f'{name}_{link + 1}', begin, MOST_OF_PERIOD / rate_hz)
-            chain.append(begin)
-        return chain
+        return begin
 
     def listen(self, number: int) -> None:
         """Let every component with a timer subscribe to some others that it does not answer to."""
@@ -114,27 +110,18 @@ def add_timers_and_chains(draft: Draft, more: int = 4) -> None:
     draft.listen(2)
 
 
-def add_task(draft: Draft, name: str, trigger: int, activity: str = '') -> None:
+def add_task(draft: Draft, name: str, trigger: int) -> None:
     """Add a component that answers within 0.1 to 4 s; half of them tell how they get on."""
     delay = float(np.exp(draft.rng.uniform(np.log(0.1), np.log(2.5))))
     spread = draft.rng.uniform(0.05, 0.15)
     result = draft.add(name, 'result', 'move_base_msgs/MoveBaseActionResult',
-                       Answer(trigger, delay, spread, activity=activity))
+                       Answer(trigger, delay, spread))
     if draft.rng.uniform() < 0.5:
         draft.add(name, 'feedback', 'move_base_msgs/MoveBaseActionFeedback',
                   Feedback(result, delay / draft.rng.uniform(2.0, 6.0)))
 
 
-_TRANSFORMS = 'tf2_msgs/TFMessage'
-_DIAGNOSTICS = 'diagnostic_msgs/DiagnosticArray'
-_TEMPERATURE = 'sensor_msgs/Temperature'
-_RESULT = 'move_base_msgs/MoveBaseActionResult[status.status='
-_FAILS = 1.0 / 12.0  # of the goals, in normal operation
-_HOLE_S = 6.0
-_HEAD_OR_TAIL_S = (6.0, 20.0)
-
-
-def _timers(timing: Timing = Timing(), conditions: Conditions = Conditions()
+def _timers(timing: Timer = Timer(), conditions: Conditions = Conditions()
             ) -> Callable[[Draft], None]:
     def drawn(draft: Draft) -> None:
         draft.timing, draft.conditions = timing, conditions
@@ -148,7 +135,7 @@ def _large(draft: Draft) -> None:
     heads = list(ends)
     for number in range(35):
         begin, rate = ends[int(draft.rng.integers(len(ends)))]
-        ends.append((draft.add_chain(f'filter{number}', begin, rate, 1)[0], rate))
+        ends.append((draft.add_chain(f'filter{number}', begin, rate, 1), rate))
         heads.append(ends[-1])
     # The other topics of 250, at 8 messages a second on average: 2000.
     shares = draft.rng.multinomial(250 - len(heads), [1.0 / len(heads)] * len(heads))
@@ -398,21 +385,21 @@ _STALLS = Conditions(stalls_an_hour=6.0)
 FAMILIES: Dict[str, Family] = {  # all families by name, each with something of its own
     'timers': Family('exact timers of 0.5 to 100 Hz, seven chains of answers', _timers()),
     'timers_drift': Family('the same, clocks that differ by up to 50 ppm',
-                           _timers(Timing(ppm=50.0))),
+                           _timers(Timer(ppm=50.0))),
     'timers_one_start': Family('timers, recorded in one start, watched in others', _timers(),
                                one_start=True),
     'stalls': Family('timers, the same start, six stalls of 0.1 to 0.6 s an hour',
                      _timers(conditions=_STALLS), one_start=True, watched_start=True),
     'stalled_loops': Family('the same, half of the timers have a new phase after each stall',
-                            _timers(Timing(loops=True), _STALLS), one_start=True,
+                            _timers(Timer(loop=True), _STALLS), one_start=True,
                             watched_start=True),
     'wander': Family('timers whose rates wander by 5 % within hours',
-                     _timers(Timing(wander=0.05))),
+                     _timers(Timer(wander=0.05))),
     'large': Family('60 nodes, 250 topics, 2000 messages a second, 1 of 1000 lost', _large),
     'driving_docked': Family('2 min driving, 2 min docked, at random', _driving_docked),
     'day_night': Family('work takes up to 3 times as long, by the time of day',
                         _timers(conditions=Conditions(load_period_s=6 * 3600.0, most_load=3.0))),
-    'jittery': Family('periods that vary by 2 %', _timers(Timing(variation=0.02))),
+    'jittery': Family('periods that vary by 2 %', _timers(Timer(variation=0.02))),
     'wireless': Family('a link on which 1 % of the delays are ten times as long', _wireless),
     'events_only': Family('actions, requests and speech, minutes of idleness', _events_only),
     'bursty': Family('15 to 40 components: timers, chains, trackers in bursts, tasks, speech',

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Dict, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -135,7 +135,9 @@ class Records:
                   for first, kind in enumerate(AFTER_CRASH)}}
         number = 0
         for kind in KINDS:
-            chosen = _spread(len(who[kind]), most) if kind in kinds else set()
+            count = len(who[kind])
+            wanted = 0 if kind not in kinds else count if most is None else min(most, count)
+            chosen = {index * count // wanted for index in range(wanted)}
             for index, source in enumerate(who[kind]):
                 if index in chosen:
                     yield from self._fault(kind, source, number,
@@ -201,9 +203,3 @@ def recorded(family: str, seed: int, hours: float, kinds: Tuple[str, ...] = KIND
     return RecordedRobot(
         records.robot.sources, records.robot.graph, records.training, records.calibration,
         lambda: records.watched(hours), lambda: records.faults(kinds, most, after_death_s))
-
-
-def _spread(number: int, most: Optional[int]) -> Set[int]:
-    """Return the indices of all of a number of things, or of the most that are wanted."""
-    wanted = number if most is None else min(most, number)
-    return {index * number // wanted for index in range(wanted)}

@@ -86,10 +86,11 @@ class Robot:
     def regular(self) -> List[str]:
         """The components that send all the time, or pause for some seconds at the most."""
         regular = [False] * len(self.outputs)
+        brief = {name for name, each in self.activities.items() if each.off_s <= _SHORT_PAUSE_S}
         for index, output in enumerate(self.outputs):
             emission = output.emission
             regular[index] = (not isinstance(emission, (Feedback, Sporadic, Once))
-                              and self._goes_on(emission.activity)
+                              and emission.activity in {'', *brief}
                               and (emission.trigger is None or regular[emission.trigger]))
         return list(dict.fromkeys(output.source for output, is_so in zip(self.outputs, regular)
                                   if is_so))
@@ -167,9 +168,6 @@ class Robot:
         origin = (_FIRST_START_S + start_seed * _BETWEEN_STARTS_S) * SECOND_NS
         return replace(self._recording(scene, origin), waiting=_waiting(scene, origin))
 
-    def _goes_on(self, activity: str) -> bool:
-        return not activity or self.activities[activity].off_s <= _SHORT_PAUSE_S
-
     def _answers_others(self, output: Output) -> bool:
         trigger = output.emission.trigger
         return trigger is not None and self.outputs[trigger].source != output.source
@@ -194,7 +192,10 @@ class Robot:
         if fault.kind in (CRASH, SILENT, *AFTER_CRASH):
             return times[~hit]
         if fault.kind == RESTART:
-            shift = _new_phase(times, scene, index) if is_timed else 0.0
+            shift = 0.0
+            if is_timed and len(times) > 1:  # the phase of its timer is another one
+                shift = float(np.median(np.diff(times))) * float(
+                    scene.of_recording(f'restart {index}').uniform())
             return times[~hit] + shift * (times[~hit] >= relief)
         if fault.kind == STARVED:
             grown = np.clip((times - scene.recorded_from - fault.onset_s) / _GROWS_S, 0.0, 1.0)
@@ -288,12 +289,6 @@ def _waited(times: np.ndarray, load: np.ndarray, scene: Scene, index: int) -> np
     """Return when an output sends on a CPU that is starved, by the load at its times, 0 to 1."""
     waits = scene.of_recording(f'starved {index}').exponential(_STARVED_S, len(times))
     return in_order(times + waits * load)
-
-
-def _new_phase(times: np.ndarray, scene: Scene, index: int) -> float:
-    """Return by how much later a timer sends that was started again [s]."""
-    period = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
-    return period * float(scene.of_recording(f'restart {index}').uniform())
 
 
 def _waiting(scene: Scene, origin: int) -> List[Waiting]:

@@ -7,6 +7,30 @@ from typing import Dict, List, Tuple
 
 import numpy as np
 
+CRASH, HALF_RATE, LATE, MISSES, RESTART = ('crash', 'half rate', 'late 60 ms', 'misses inputs',
+                                           'restart')
+"""The kinds of faults of one component."""
+
+STALL, LOAD, STOP = 'stall after a crash', 'load after a crash', 'stop after a crash'
+"""Crashes that something else follows, which must not hide them."""
+
+AFTER_CRASH = (STALL, LOAD, STOP)
+
+SLOWER = '0.7 of the rate'  # a fault of one component that no gap alone shows
+
+OLD, LOSSES, OTHER, FLOOD, FAILS = ('old stamps', 'loses 30 %', 'new value', 'flood of log lines',
+                                    'fails more often')
+"""The kinds of faults of one component that what it says shows."""
+
+STARVED, SILENT = 'starved CPU', 'everything silent'  # the kinds of faults of the whole robot
+LONGEST_START_S = 90_000.0  # a start of the robot lasts no longer than this [s]
+
+LEAD_S = 10.0
+"""A recording begins on a robot that has run for this long [s]; the longest answers fit into it.
+"""
+
+LASTS_S = 2.0  # what follows a crash lasts for so long [s]
+
 _TRANSPORT_S = 0.0002
 _LINK_S = 0.004
 _SHORTEST_LINK, _LONGEST_LINK = 0.7, 1.5
@@ -95,25 +119,6 @@ def in_order(times: np.ndarray) -> np.ndarray:
     return np.maximum.accumulate(times) if len(times) else times
 
 
-CRASH, HALF_RATE, LATE, MISSES, RESTART = ('crash', 'half rate', 'late 60 ms', 'misses inputs',
-                                           'restart')
-"""The kinds of faults of one component."""
-
-STALL, LOAD, STOP = 'stall after a crash', 'load after a crash', 'stop after a crash'
-"""Crashes that something else follows, which must not hide them."""
-
-AFTER_CRASH = (STALL, LOAD, STOP)
-
-SLOWER = '0.7 of the rate'  # a fault of one component that no gap alone shows
-
-OLD, LOSSES, OTHER, FLOOD, FAILS = ('old stamps', 'loses 30 %', 'new value', 'flood of log lines',
-                                    'fails more often')
-"""The kinds of faults of one component that what it says shows."""
-
-STARVED, SILENT = 'starved CPU', 'everything silent'  # the kinds of faults of the whole robot
-LONGEST_START_S = 90_000.0  # a start of the robot lasts no longer than this [s]
-
-
 @dataclass(frozen=True)
 class Fault:
     """A fault of one component, or of the whole robot."""
@@ -137,13 +142,6 @@ class Fault:
 
 
 NOTHING = Fault('', '', LONGEST_START_S)
-
-
-LEAD_S = 10.0
-"""A recording begins on a robot that has run for this long [s]; the longest answers fit into it.
-"""
-
-LASTS_S = 2.0  # what follows a crash lasts for so long [s]
 
 
 class Scene:
@@ -171,7 +169,10 @@ class Scene:
         self.stalls = conditions.stalls(self.begin, end, self.of_recording('stalls'))
         """When the host stalls, and for how long [s]."""
         if fault.kind == STALL:
-            self._stall_once_more(recorded_from + fault.follows_s)
+            begins, lengths = self.stalls
+            place = np.searchsorted(begins, recorded_from + fault.follows_s)
+            self.stalls = (np.insert(begins, place, recorded_from + fault.follows_s),
+                           np.insert(lengths, place, LASTS_S))
         self._day_phase = self.of_start('time of day').uniform(0.0, 1.0)
 
     def of_start(self, purpose: str) -> np.random.Generator:
@@ -202,8 +203,3 @@ class Scene:
         """Return at which times [s] a component has a fault of a kind."""
         is_one = (self.fault.kind, self.fault.source) == (kind, source)
         return self.in_fault(times) & is_one
-
-    def _stall_once_more(self, begin: float) -> None:
-        begins, lengths = self.stalls
-        place = np.searchsorted(begins, begin)
-        self.stalls = np.insert(begins, place, begin), np.insert(lengths, place, LASTS_S)

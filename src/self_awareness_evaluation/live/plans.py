@@ -3,19 +3,28 @@ from __future__ import annotations
 
 import argparse
 import random
+import threading
 import time
 from functools import partial
 from pathlib import Path
-from typing import Dict, Iterator, Sequence, Tuple
+from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
-from self_awareness_evaluation.live import recovery
+import rospy
+import yaml
+
+from self_awareness.msg import RecoveryAction, RecoveryActions
+from self_awareness.recovery import history
+from self_awareness.recovery.ladder import SHORTEST_HEALING_S
+from self_awareness.recovery.node_process import process_of
 from self_awareness_evaluation.live.follow_me import CRASH, HANG, FollowMe
+from self_awareness_evaluation.live.listeners import TopicListener
 from self_awareness_evaluation.live.packaged import FAULTS, PackagedSystem
-from self_awareness_evaluation.live.processes import Processes
-from self_awareness_evaluation.live.results import AT_RANDOM, HANGS
+from self_awareness_evaluation.live.processes import Processes, becomes_true
+from self_awareness_evaluation.live.rows import AT_RANDOM, HANGS, RESTARTED, Row
 from self_awareness_evaluation.live.session import BAGS, EVENTS, Plan, Step, bursts
 from self_awareness_evaluation.records import NORMAL, Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
+from self_awareness_follow_me.induction import process_id
 
 NORMAL_S = 20.0  # of `live`: normal operation at the beginning of each round [s]
 
@@ -44,6 +53,16 @@ _SHARE_OF_SHORT = 0.15
 _VICTIM = 'player'
 _BACK_WITHIN_S = 60.0
 _CRASH_RESPAWNED_S = 1.0  # who was killed is back at once
+
+DELAY_S = 1.0  # of `recovery`: an alarm stands for so long before a node is restarted [s]
+
+HEALED_S = max(DELAY_S, SHORTEST_HEALING_S) + 1.0
+"""After so long without an alarm, the next fault is a new one, and not what the last step did not
+help against [s]."""
+
+_RECOVERY = '/self_awareness_recovery'
+_GRACE_S = 1.0
+_MOST_STEPS = history.MOST  # more than faults: what is wrong is to be seen
 
 
 def live(given: argparse.Namespace, learning: Learning, _: Path, processes: Processes) -> Plan:
@@ -103,12 +122,12 @@ def with_recovery(given: argparse.Namespace, learning: Learning, folder: Path,
         name, source = f'{HANG}:{_VICTIM}', f'/{_VICTIM}'
         for _ in range(given.times):
             yield Step(name, _BACK_WITHIN_S, (source,), partial(robot.broken, name), round=HANGS,
-                       returned=recovery.returns(source, robot.topics[_VICTIM], _BACK_WITHIN_S))
+                       returned=_returns(source, robot.topics[_VICTIM], _BACK_WITHIN_S))
         yield from _at_random(robot, given, AT_RANDOM, _CRASH_RESPAWNED_S)
 
-    restarts = recovery.RestartListener()
-    command = recovery.command(folder / 'rules.yaml', list(robot.topics))
-    return Plan(robot, EVENTS, learning, steps(), recovery.HEALED_S, _AT_RANDOM_QUIET_WITHIN_S,
+    restarts = RestartListener()
+    command = _recovery_command(folder / 'rules.yaml', list(robot.topics))
+    return Plan(robot, EVENTS, learning, steps(), HEALED_S, _AT_RANDOM_QUIET_WITHIN_S,
                 beside=[command], also=restarts.rows)
 
 
@@ -146,3 +165,56 @@ def _pieces(length_s: float) -> Iterator[float]:
     while length_s > 0.0:
         yield min(length_s, _PIECE_S)
         length_s -= _PIECE_S
+
+
+def _recovery_command(rules: Path, components: Sequence[str]) -> List[str]:
+    """Write rules that restart every one of these components that has died; return the command."""
+    rules.write_text(yaml.safe_dump({
+        'delay': DELAY_S, 'grace': _GRACE_S, 'limit': _MOST_STEPS, 'limit_of_all': _MOST_STEPS,
+        'rules': [{'component': f'/{name}', 'kinds': ['silent', 'never came'],
+                   'steps': [{'stop': [f'/{name}']}]} for name in components]}))
+    return ['rosrun', 'self_awareness', 'recovery.py', str(rules), f'__name:={_RECOVERY[1:]}']
+
+
+class RestartListener:
+    """Makes a row of each node that the recovery stops; `rospy.init_node` has been called."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._seen: Dict[int, RecoveryAction] = {}  # by their begin. Guarded by _lock.
+        self._told = 0
+        rospy.Subscriber(f'{_RECOVERY}/actions', RecoveryActions, self._on_actions)
+
+    def rows(self) -> List[Row]:
+        """Return those since the last call."""
+        with self._lock:
+            new = list(self._seen.values())[self._told:]
+        self._told += len(new)
+        return [Row(RESTARTED, each.component[1:], onset=each.begin.to_sec()) for each in new]
+
+    def _on_actions(self, message: RecoveryActions) -> None:
+        with self._lock:
+            self._seen.update((each.begin.to_nsec(), each) for each in message.actions)
+
+
+def _returns(node: str, topic: str, within_s: float) -> Callable[[], Optional[float]]:
+    """Return what waits until a node that was stopped is another process, and is heard.
+
+    Args:
+        node: its name; it runs.
+        topic: on which it publishes all the time.
+        within_s: None is returned instead of when it was heard, if it takes longer [s].
+    """
+    process = process_of(node, process_id(node))
+
+    def wait() -> Optional[float]:
+        until = time.monotonic() + within_s
+        with TopicListener([topic]) as listener:
+            if not becomes_true(lambda: not process.runs(), within_s):
+                return None
+            ended = time.time()
+            is_back = becomes_true(lambda: listener.last(node, topic) > ended,
+                                   until - time.monotonic())
+            return listener.last(node, topic) if is_back else None
+
+    return wait

@@ -11,11 +11,10 @@ import numpy as np
 from self_awareness.calibration import confidence
 from self_awareness_evaluation.figures import of_all, seconds, table
 from self_awareness_evaluation.live.follow_me import CRASH, HANG
-from self_awareness_evaluation.live.recovery import DELAY_S
-from self_awareness_evaluation.live.rows import RESTARTED, Row
+from self_awareness_evaluation.live.plans import DELAY_S
+from self_awareness_evaluation.live.rows import AT_RANDOM, HANGS, RESTARTED, Row
 from self_awareness_evaluation.rows import AFTERMATH_S
 
-HANGS, AT_RANDOM = 1, 2  # rounds of a recovery: a node hangs again and again; faults at random
 MUST_BE_FOUND_S = 2.0  # a fault that lasts for longer is missed if there is no alarm [s]
 
 BACK_WITHIN_S = 5.0

@@ -9,6 +9,8 @@ from typing import List, NamedTuple, Optional, Sequence, Tuple
 RESTARTED = 'restarted by the recovery'
 """The fault of a row that tells of a node that the recovery has restarted."""
 
+HANGS, AT_RANDOM = 1, 2  # rounds of a recovery: a node hangs again and again; faults at random
+
 ERROR, WARN = 2, 1  # levels of a status that are an alarm, and a suspicion
 _SEPARATOR = '; '  # between what was said of one alarm or suspicion, and of the next one
 _RECORDED = '; events in '  # before the file of the flight recorder, which only this machine has

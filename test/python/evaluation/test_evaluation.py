@@ -5,9 +5,9 @@ import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, EventType, Learner, PaperModel
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.detectors import Paper
 from self_awareness_evaluation.records import WindowedEvents, persistent, settling, stamps_by
 from self_awareness_evaluation.simulated import fault_record, graph_of, normal_record
+from self_awareness_evaluation.systems import Paper
 from self_awareness_follow_me.scenario import load_scenario
 
 from evaluation_robot import BATTERY, LASER, START, robot

@@ -8,11 +8,11 @@ import pytest
 
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.detectors import Evidence, Paper
 from self_awareness_evaluation.records import Judged
 from self_awareness_evaluation.rows import first_alarm
 from self_awareness_evaluation.simulated import (CALIBRATION_NAME, RECORD_S, TRAINING_NAMES,
                                                  WITHIN_S, fault_record, graph_of, normal_record)
+from self_awareness_evaluation.systems import Evidence, Paper
 from self_awareness_follow_me.scenario import load_scenario
 
 SEED = 1

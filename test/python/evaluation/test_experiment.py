@@ -12,11 +12,11 @@ from self_awareness import Tuning
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import experiment
 from self_awareness_evaluation import variants as frame
-from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.families.protocol import Records, recorded
 from self_awareness_evaluation.records import FAMILIES, NORMAL, FaultRecord, Learning, Robot
 from self_awareness_evaluation.rows import Row
+from self_awareness_evaluation.systems import Evidence
 from self_awareness_evaluation.variants import Variant, one_by_one, side_by_side, tuning_of
 
 from evaluation_robot import START, robot

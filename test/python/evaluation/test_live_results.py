@@ -11,12 +11,11 @@ import pytest
 
 from self_awareness_evaluation import evaluate
 from self_awareness_evaluation.live import command, results
-from self_awareness_evaluation.live.recovery import DELAY_S
-from self_awareness_evaluation.live.results import (AT_RANDOM, BACK_WITHIN_S, HANGS,
-                                                    MUST_BE_FOUND_S, not_mended, of_healthy,
-                                                    slope_mb_per_hour)
-from self_awareness_evaluation.live.rows import (ERROR, RESTARTED, WARN, Incident, Row, Status,
-                                                 measure)
+from self_awareness_evaluation.live.plans import DELAY_S
+from self_awareness_evaluation.live.results import (BACK_WITHIN_S, MUST_BE_FOUND_S, not_mended,
+                                                    of_healthy, slope_mb_per_hour)
+from self_awareness_evaluation.live.rows import (AT_RANDOM, ERROR, HANGS, RESTARTED, WARN,
+                                                 Incident, Row, Status, measure)
 from self_awareness_evaluation.pages import RESULTS
 from self_awareness_evaluation.rows import AFTERMATH_S, load
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from self_awareness import DEFAULT_WINDOW, METHOD
-from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.families.protocol import KINDS, Records
 from self_awareness_evaluation.records import Judged, Learning, SystemAlarm, WindowedEvents
+from self_awareness_evaluation.systems import Evidence
 
 KEPT = Path(__file__).resolve().parents[2] / 'data' / 'verdicts.json'
 ROBOTS = (('bursty', 3), ('driving_docked', 3), ('everyday', 3), ('hole', 3), ('lossy', 3),

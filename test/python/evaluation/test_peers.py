@@ -6,9 +6,9 @@ import pytest
 
 from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.peers import (SPAN, FrequencyMonitor, GapBounds, GapMonitor,
-                                             messages_in_span)
 from self_awareness_evaluation.records import WindowedEvents
+from self_awareness_evaluation.systems import (SPAN, FrequencyMonitor, GapBounds, GapMonitor,
+                                               messages_in_span)
 from self_awareness_evaluation.variants import SYSTEMS, Variant
 
 from evaluation_robot import START, robot

@@ -11,12 +11,11 @@ import pytest
 
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import confidence
-from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.figures import Found, Quiet, rate_interval
 from self_awareness_evaluation.records import (NORMAL, SUSPICION, FaultRecord, Judged, Learning,
                                                SystemAlarm, WindowedEvents)
-from self_awareness_evaluation.rows import (Row, Subject, fault_row, load, normal_row,
-                                            save)
+from self_awareness_evaluation.rows import Row, Subject, fault_row, load, normal_row, save
+from self_awareness_evaluation.systems import Evidence
 
 from evaluation_robot import START, robot
 
