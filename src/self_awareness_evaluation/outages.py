@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Callable, Dict, Iterator, NamedTuple, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterator, NamedTuple, Optional, Sequence, Tuple, Union
 
 from self_awareness import DetectorParameters, EncodingRules, EvidenceModel, Tuning, recordings
 from self_awareness.calibration.limits import TooLittleError
@@ -18,7 +19,7 @@ from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
 from self_awareness_evaluation.experiment import Unit
-from self_awareness_evaluation.records import NORMAL, System, SystemAlarm, WindowedEvents
+from self_awareness_evaluation.records import NORMAL, SystemAlarm, WindowedEvents
 from self_awareness_evaluation.rows import HOUR_S, Row, Subject, at_end
 from self_awareness_evaluation.systems import FrequencyMonitor, Paper, judged_of
 from self_awareness_evaluation.variants import tuning_of
@@ -126,33 +127,11 @@ def _evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
                       len(watched))
 
 
-def _paper(case: Case, data: Path, _: Tuning) -> JudgedCase:
-    system = Paper(RATE, MOST_SILENT)
-    judged, types = _learned(system, case, data)
-    return judged._replace(watched=types if (system.threshold or 0.0) > 0.0 else 0)
-
-
-def _frequency_learned(case: Case, data: Path, _: Tuning) -> JudgedCase:
-    system = FrequencyMonitor(RATE)
-    return _learned(system, case, data)[0]._replace(watched=len(system.bounds))
-
-
-SYSTEMS: Dict[str, Callable[[Case, Path, Tuning], JudgedCase]] = {
-    'evidence': _evidence,
-    'paper': _paper,
-    'frequency_learned': _frequency_learned,
-}
-"""The systems by name."""
-
-
-def _trained(data: Path, tuning: Tuning, *parts: BagPart) -> Trained:
-    return many_bags.train([_below(data, part) for part in parts],
-                           Counting(EncodingRules.defaults(), detector=BOTH, tuning=tuning))
-
-
-def _learned(system: System, case: Case, data: Path) -> Tuple[JudgedCase, int]:
-    """Return what a system that has learned says, and how many event types of messages its
-    training has."""
+def _learned(make: Callable[[], Union[Paper, FrequencyMonitor]], case: Case, data: Path,
+             _: Tuning) -> JudgedCase:
+    """Let another system judge; it learns from the first part, and its threshold is that of the
+    second one."""
+    system = make()
     trained = _trained(data, Tuning(), case.training).model  # for the encoding only
     found = [recordings.read(trained, _below(data, part))
              for part in (case.training, case.calibration, BagPart(case.judged))]
@@ -161,9 +140,25 @@ def _learned(system: System, case: Case, data: Path) -> Tuple[JudgedCase, int]:
                        attributes=each.attributes) for each in found)
     system.train([training])
     system.calibrate([calibration])
-    messages = sum(kind.is_message for kind in trained.event_types)
-    alarms = system.judge(judged).alarms
-    return JudgedCase(alarms, (), found[-1].origin, found[-1].end, 0), messages
+    if isinstance(system, FrequencyMonitor):
+        watched = len(system.bounds)
+    else:
+        watched = (sum(kind.is_message for kind in trained.event_types)
+                   if (system.threshold or 0.0) > 0.0 else 0)
+    return JudgedCase(system.judge(judged).alarms, (), found[-1].origin, found[-1].end, watched)
+
+
+SYSTEMS: Dict[str, Callable[[Case, Path, Tuning], JudgedCase]] = {
+    'evidence': _evidence,
+    'paper': partial(_learned, lambda: Paper(RATE, MOST_SILENT)),
+    'frequency_learned': partial(_learned, lambda: FrequencyMonitor(RATE)),
+}
+"""The systems by name."""
+
+
+def _trained(data: Path, tuning: Tuning, *parts: BagPart) -> Trained:
+    return many_bags.train([_below(data, part) for part in parts],
+                           Counting(EncodingRules.defaults(), detector=BOTH, tuning=tuning))
 
 
 def _below(data: Path, part: BagPart) -> BagPart:

@@ -10,7 +10,8 @@ import hashlib
 import os
 import random
 import tempfile
-from typing import Dict, List, Optional, Sequence, Set, Tuple
+from functools import partial
+from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from self_awareness import EncodingRules, read_events
 from self_awareness.stamps import nanoseconds
 from self_awareness_evaluation.records import (NORMAL, FaultRecord, Learning, Robot, Subscriptions,
                                                WindowedEvents)
+from self_awareness_follow_me.component_spec import ComponentSpec
 from self_awareness_follow_me.effects import Change
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import Scenario, load_scenario
@@ -67,10 +69,7 @@ def default_faults(scenario: Scenario) -> List[str]:
 def own(seed: int, faults: Sequence[str]) -> Robot:
     """Return the robot of a seed; faults: kinds of simulation.InducedFault."""
     scenario = load_scenario()
-
-    def normal(name: str, length_s: float) -> WindowedEvents:
-        return normal_record(scenario, seed, name, length_s)
-
+    normal = partial(normal_record, scenario, seed)
     return Robot(
         {f'/{spec.name}' for spec in scenario.components}, graph_of(scenario),
         lambda learning: [normal(name, learning.training_s) for name in TRAINING_NAMES],
@@ -124,17 +123,16 @@ def _recorded(scenario: Scenario, seed: int, duration_s: float,
 def _subscriptions(scenario: Scenario, start_s: float, fault: Optional[InducedFault]
                    ) -> Sequence[Tuple[int, Subscriptions]]:
     """Return what nodes subscribe to, from the start on, and from the onset of a fault on."""
-    found = [(nanoseconds(start_s), _subscribed(scenario, None))]
+    def since(begin_s: float, specs: Iterable[ComponentSpec]) -> Tuple[int, Subscriptions]:
+        return nanoseconds(begin_s), frozenset((f'/{spec.name}', f'/{topic}') for spec in specs
+                                               for topic in spec.inputs())
+
+    found = [since(start_s, scenario.components)]
     if fault is not None:
         effect = effect_of(scenario, fault.kind)
         if isinstance(effect, Change):
-            found.append((nanoseconds(start_s + fault.onset_s), _subscribed(scenario, effect)))
+            found.append(since(start_s + fault.onset_s, map(effect.changed, scenario.components)))
     return found
-
-
-def _subscribed(scenario: Scenario, change: Optional[Change]) -> Subscriptions:
-    specs = [spec if change is None else change.changed(spec) for spec in scenario.components]
-    return frozenset((f'/{spec.name}', f'/{topic}') for spec in specs for topic in spec.inputs())
 
 
 def _start_s(seed: int) -> float:

@@ -118,7 +118,9 @@ class Evidence:
                         recording.fingerprint, attributes=recording.attributes)
         self._trained = learner.learn()
         for recording in recordings:
-            self._trained.add_subscriptions(_lasting(recording))
+            states = [set(present) for _, present in recording.subscriptions]
+            if states:  # what nodes subscribe to all the time
+                self._trained.add_subscriptions(set.intersection(*states))
         self._model = EvidenceModel(self._trained)
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
@@ -160,12 +162,6 @@ class Evidence:
                                           for stamp, present in encoded.subscriptions],
                                  waiting=list(encoded.waiting),
                                  attributes=encoded.attributes)
-
-
-def _lasting(recording: WindowedEvents) -> Set[Tuple[str, str]]:
-    """Return what nodes of a recording subscribe to all the time; empty: it is not known."""
-    states = [set(present) for _, present in recording.subscriptions]
-    return set.intersection(*states) if states else set()
 
 
 def judged_of(verdicts: Verdicts, event_types: Sequence[EventType],

@@ -67,19 +67,16 @@ class MonitorListener:
             LiveError: it does not answer.
         """
         for resets in range(1, _MOST_RESETS + 1):
-            self._reset()
+            try:
+                rospy.wait_for_service(f'{MONITOR}/reset', _SERVICE_WITHIN_S)
+                rospy.ServiceProxy(f'{MONITOR}/reset', Trigger)()
+            except (rospy.ROSException, rospy.ServiceException) as error:
+                raise LiveError(f'{MONITOR}/reset: {error}') from error
+            with self._lock:  # what it said before does not count as quiet
+                self._quiet_since = time.monotonic()
             if becomes_true(lambda: self.quiet_for() >= QUIET_S, _QUIET_WITHIN_S):
                 return '' if resets == 1 else f'no alarm only after {resets} times ~reset'
         return f'the alarm stood after {_MOST_RESETS} times ~reset'
-
-    def _reset(self) -> None:
-        try:
-            rospy.wait_for_service(f'{MONITOR}/reset', _SERVICE_WITHIN_S)
-            rospy.ServiceProxy(f'{MONITOR}/reset', Trigger)()
-        except (rospy.ROSException, rospy.ServiceException) as error:
-            raise LiveError(f'{MONITOR}/reset: {error}') from error
-        with self._lock:  # what it said before does not count as quiet
-            self._quiet_since = time.monotonic()
 
     def _on_status(self, message: SelfAwareness) -> None:
         suspects = dict.fromkeys(suspect.source for suspect in message.suspects)  # each once

@@ -52,13 +52,6 @@ def _driver(name: str, *topics: str) -> Node:
     return Node(name, 'rosbag', 'play', ('--loop', '--quiet'), topics, f'{name}.bag')
 
 
-def _camera(name: str, rate_hz: float) -> Node:
-    """Return a camera that publishes the same picture over and over."""
-    return Node(name, 'image_publisher', 'image_publisher',
-                (f'_publish_rate:={rate_hz:g}',),
-                (f'/{name}/image_raw', f'/{name}/camera_info'), f'{name}.png')
-
-
 def _manager(name: str, *topics: str) -> Node:
     return Node(name, 'nodelet', 'nodelet', ('manager',), topics)
 
@@ -81,8 +74,10 @@ NODES = (
     _driver('base', '/odom', '/battery'),
     _driver('gps', '/fix', '/vel'),
     _driver('depth_camera', '/depth/image_raw', '/depth/camera_info'),
-    # Cameras.
-    *(_camera(name, rate_hz) for name, rate_hz in CAMERAS_HZ.items()),
+    # Cameras, which publish the same picture over and over.
+    *(Node(name, 'image_publisher', 'image_publisher', (f'_publish_rate:={rate_hz:g}',),
+           (f'/{name}/image_raw', f'/{name}/camera_info'), f'{name}.png')
+      for name, rate_hz in CAMERAS_HZ.items()),
     # Two managers with nodelets.
     _manager('vision', '/front/image_mono', '/front/image_color', '/front/image_rect',
              '/front/preview/image_raw', '/front/preview/camera_info',
@@ -149,16 +144,10 @@ NODES = (
 """In the order in which they are started."""
 
 FAULTS = (
-    (KILL, 'lidar', 10.0),
-    (KILL, 'vision', 10.0),
-    (KILL, 'robot_state_publisher', 10.0),
-    (KILL, 'joystick', 10.0),
-    (STOP, 'depth_camera', 10.0),
-    (STOP, 'transforms', 10.0),
-    (RESTART, 'base', 10.0),
-    (RESTART, 'rear_threshold', 10.0),
-    (HALF_RATE, 'front', 20.0),
-    (HALF_RATE, 'rear', 20.0),
+    *((KILL, node, 10.0) for node in ('lidar', 'vision', 'robot_state_publisher', 'joystick')),
+    *((STOP, node, 10.0) for node in ('depth_camera', 'transforms')),
+    *((RESTART, node, 10.0) for node in ('base', 'rear_threshold')),
+    *((HALF_RATE, node, 20.0) for node in CAMERAS_HZ),
     (STARVE, '', 15.0),
 )
 """Kind, node (empty: the whole machine) and length [s], in the order in which they are induced."""

@@ -7,7 +7,6 @@ import random
 import signal
 import threading
 import time
-from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import (Any, Callable, ContextManager, Dict, Iterator, List, Optional, Protocol,
@@ -27,6 +26,17 @@ from self_awareness_evaluation.rows import AFTERMATH_S
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Starvation
 from self_awareness_follow_me.induction import process_id
+
+APART_S = 70.0
+"""From the end of one bag to the beginning of the next one [s].
+
+Bags that follow each other within a minute count as one start."""
+
+BAGS, EVENTS = 'bags', 'events'  # what is recorded: whole messages, or event logs
+_TRAINING, _CALIBRATION, _MODEL = 'training', 'calibration', 'learned.model'  # names of files
+_WITHIN_S = 900.0
+_STATUS_WITHIN_S = 5.0  # of the last window of a stretch
+_CLOCK_STEP_S = 0.05  # a clock that moved by more than this was set
 
 _BURST_S = (0.2, 1.5)  # at least and at most
 _BETWEEN_BURSTS_S = 20.0  # on the average
@@ -72,18 +82,6 @@ def bursts(chance: random.Random) -> Iterator[float]:
         thread.join()
 
 
-APART_S = 70.0
-"""From the end of one bag to the beginning of the next one [s].
-
-Bags that follow each other within a minute count as one start."""
-
-BAGS, EVENTS = 'bags', 'events'  # what is recorded: whole messages, or event logs
-_TRAINING, _CALIBRATION, _MODEL = 'training', 'calibration', 'learned.model'  # names of files
-_WITHIN_S = 900.0
-_STATUS_WITHIN_S = 5.0  # of the last window of a stretch
-_CLOCK_STEP_S = 0.05  # a clock that moved by more than this was set
-
-
 class System(Protocol):
     """A robot: start() waits until it is in normal operation, or raises LiveError."""
 
@@ -102,7 +100,7 @@ class Step:
     lasts_s: float  # from the onset to when it is undone, at most [s]
     culprits: Tuple[str, ...] = ()  # sources to blame; empty: none, or the whole machine
     # Induces it, hands out its onset [s since 1970], and undoes it.
-    broken: Callable[[], ContextManager[float]] = lambda: broken_by(nullcontext())
+    broken: Callable[[], ContextManager[float]] = lambda: broken_by(contextlib.nullcontext())
     is_normal: bool = False  # nothing is wrong
     round: int = 1  # number, from 1 on
     reset: bool = False  # the monitor's ~reset is called before
@@ -222,11 +220,16 @@ class Walk:
     def take(self, step: Step) -> Row:
         """Induce a fault and undo it, or let normal operation pass; return what was measured."""
         note = self._monitor.reset_until_quiet() if step.reset else ''
+        what = ' '.join((step.fault, *step.culprits))
         with step.broken() as onset:
             if step.is_normal and self._normal_since is not None:
                 onset = self._normal_since
             ahead_s, load = time.time() - time.monotonic(), os.getloadavg()[0]
-            back = _passed(step)
+            if step.returned is None:
+                wait(step.lasts_s, what)
+            else:
+                say(what)
+            back = None if step.returned is None else step.returned()
             end = time.time()
             set_s = end - time.monotonic() - ahead_s
         row = Row(step.fault, ' '.join(source[1:] for source in step.culprits), round=step.round,
@@ -256,16 +259,6 @@ class Walk:
                      >= self._plan.quiet_s, self._plan.quiet_within_s)
         self._normal_since = recovered + AFTERMATH_S
         return replace(row, recovered_s=recovered - row.onset)
-
-
-def _passed(step: Step) -> Optional[float]:
-    """Let the time of a step pass; return when the node was back, if it came by itself."""
-    what = ' '.join((step.fault, *step.culprits))
-    if step.returned is None:
-        wait(step.lasts_s, what)
-        return None
-    say(what)
-    return step.returned()
 
 
 def _promised(path: Path) -> Dict[str, Any]:
