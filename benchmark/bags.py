@@ -12,17 +12,24 @@ from __future__ import annotations
 
 import json
 import os
+import random
 import statistics
 import sys
 import tempfile
-from typing import Any, Dict, List, NamedTuple, Optional, Sequence
+from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
-import bags_robot
+import genpy
+import rosbag
+from geometry_msgs.msg import PoseWithCovarianceStamped, TwistStamped
+from nav_msgs.msg import Odometry
+from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import BatteryState, CameraInfo, Image, Imu, JointState, MagneticField, Range
+
 import page
 import timers
-from programs import Usage, built, run
+from page import Usage, built, run_program
 
-_SECONDS = 160.0
+_SECONDS = 160.0  # 10 MB each
 _SEED = 1
 _JOBS = (1, 2)
 _PARTS = 8
@@ -32,6 +39,11 @@ _RAW = 'import sys, rosbag\nfor _ in rosbag.Bag(sys.argv[1]).read_messages(raw=T
 _EVENTS = ('import sys, self_awareness as s\n'
            's.read_events(sys.argv[1], s.EncodingRules.defaults())')
 _PIECE_BYTES = 1 << 20
+_START_S = 1_600_000_000
+_IMAGE = Image(height=480, width=640, encoding='rgb8', step=1920)
+_IMAGE_BYTES = _IMAGE.step * _IMAGE.height
+_LOG_EVERY_S = 2.0
+_SHORTEST_STEP_S = 1e-5  # between two messages of one topic
 _NAMES = {'view': '`rosbag::View`, C++', 'read_messages': '`read_messages(raw=True)`, Python',
           'read_events': '`read_events`', 'train': '`train`'}
 
@@ -76,40 +88,40 @@ def measure(bag: str, model: str, rounds: int) -> Dict[str, Any]:
     warm(bag)
     for _ in range(rounds):
         for name, program in chosen.items():
-            start[name].append(run(program.start))
-            work[name].append(run(program.work))
+            start[name].append(run_program(program.start))
+            work[name].append(run_program(program.work))
     return {name: {
         'wall_s': _median(work[name], 'wall_s'), 'start_wall_s': _median(start[name], 'wall_s'),
         'read_bytes': _median(work[name], 'read_bytes') - _median(start[name], 'read_bytes')}
             for name in chosen}
 
 
-def measure_images(folder: str, seconds: float, rounds: int) -> Dict[str, Any]:
+def measure_images(folder: str, rounds: int) -> Dict[str, Any]:
     """Make a bag with images, and measure every program on it."""
     bag = os.path.join(folder, 'robot.bag')
     print('making the bag', file=sys.stderr)
-    messages = bags_robot.write(bag, seconds, _SEED)
+    messages = _write(bag, _SECONDS, _SEED)
     print('measuring', file=sys.stderr)
-    result = dict(page.machine(), rounds=rounds, seconds=seconds, messages=messages,
+    result = dict(page.machine(), rounds=rounds, seconds=_SECONDS, messages=messages,
                   bag_bytes=os.path.getsize(bag),
                   programs=measure(bag, os.path.join(folder, 'robot.model'), rounds))
     os.remove(bag)
     return result
 
 
-def measure_jobs(folder: str, seconds: float, rounds: int) -> Dict[str, Any]:
-    """Make bags of many event types, of so many seconds each; return medians by --jobs."""
+def measure_jobs(folder: str, rounds: int) -> Dict[str, Any]:
+    """Make bags of many event types; return medians by --jobs."""
     print('making the bags', file=sys.stderr)
-    bags, messages = timers.write(folder, _PARTS, _PART_TYPES, seconds)
+    bags, messages = timers.write(folder, _PARTS, _PART_TYPES, _PART_SECONDS)
     for bag in bags:
         warm(bag)
     print('measuring', file=sys.stderr)
     usages: Dict[int, List[Usage]] = {jobs: [] for jobs in _JOBS}
     for _ in range(rounds):
         for jobs, of_jobs in usages.items():
-            of_jobs.append(run([built('train'), *bags, '-o', os.path.join(folder, 'm'),
-                                '--jobs', str(jobs)]))
-    return dict(page.machine(), rounds=rounds, seconds=seconds, bags=_PARTS,
+            of_jobs.append(run_program([built('train'), *bags, '-o', os.path.join(folder, 'm'),
+                                        '--jobs', str(jobs)]))
+    return dict(page.machine(), rounds=rounds, seconds=_PART_SECONDS, bags=_PARTS,
                 types=_PART_TYPES, messages=messages,
                 jobs={str(jobs): {'wall_s': _median(of_jobs, 'wall_s')}
                       for jobs, of_jobs in usages.items()})
@@ -148,28 +160,95 @@ def _time(programs: Dict[str, Any], name: str, alone: bool) -> str:
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the benchmark; return the exit code."""
     parser = page.parser('bags', __doc__.split('\n', 1)[0])
-    parser.add_argument('--seconds', type=float, default=_SECONDS, metavar='S',
-                        help=f'of the bag with images, 10 MB each (default: {_SECONDS:g})')
     parser.add_argument('--rounds', type=int, default=11, metavar='N',
                         help='runs of every program, in turn (default: 11)')
-    parser.add_argument('--folder', default=tempfile.gettempdir(), metavar='DIR',
-                        help='where the bag is made (default: %(default)s)')
     parser.add_argument('--only', choices=('images', 'jobs'),
                         help='measure one part again; the other one stays as bags.json has it')
-    parser.add_argument('--part-seconds', type=float, default=_PART_SECONDS, metavar='S',
-                        help=f'of each bag for --jobs (default: {_PART_SECONDS:g})')
     arguments = parser.parse_args(argv)
     result: Dict[str, Any] = {}
     if arguments.only is not None:
         result = json.loads((arguments.output / 'performance' / 'bags.json').read_text())
-    with tempfile.TemporaryDirectory(dir=arguments.folder) as folder:
+    with tempfile.TemporaryDirectory() as folder:
         if arguments.only != 'jobs':
-            result.update(measure_images(folder, arguments.seconds, arguments.rounds))
+            result.update(measure_images(folder, arguments.rounds))
         if arguments.only != 'images':
-            result['jobs'] = measure_jobs(folder, arguments.part_seconds, arguments.rounds)
+            result['jobs'] = measure_jobs(folder, arguments.rounds)
     page.publish('bags', result, markdown(result), arguments.output)
     print(markdown(result))
     return 0
+
+
+class _Topic(NamedTuple):
+    """What a node publishes each `every` of its cycles, `delay` [s] after the cycle's start."""
+
+    name: str
+    kind: Any
+    every: int = 1
+    delay: float = 0.0
+
+
+_NODES: Dict[str, Tuple[float, List[_Topic]]] = {
+    '/camera': (10.0, [_Topic('/camera/image_raw', _IMAGE),
+                       _Topic('/camera/camera_info', CameraInfo(D=[0.0] * 5), 1, 0.0005),
+                       _Topic('/camera/temperature', BatteryState(), 10, 0.001)]),
+    '/imu': (200.0, [_Topic('/imu/data', Imu()), _Topic('/imu/mag', MagneticField(), 4, 0.0004),
+                     _Topic('/imu/raw', Imu(), 1, 0.0002)]),
+    '/base': (100.0, [_Topic('/odom', Odometry()), _Topic('/joint_states', JointState(), 1, 0.001),
+                      _Topic('/battery', BatteryState(), 100, 0.002),
+                      _Topic('/wheel_speed', TwistStamped(), 1, 0.0005)]),
+    '/sonar': (40.0, [_Topic(f'/sonar/{i}', Range(), 1, 0.002 * i) for i in range(6)]),
+    '/filter': (100.0, [_Topic('/filter/pose', PoseWithCovarianceStamped()),
+                        _Topic('/filter/twist', TwistStamped(), 1, 0.0003),
+                        _Topic('/filter/odom', Odometry(), 2, 0.0006)]),
+    '/planner': (20.0, [_Topic('/plan/twist', TwistStamped()),
+                        _Topic('/plan/goal', PoseWithCovarianceStamped(), 40, 0.003),
+                        _Topic('/plan/state', JointState(), 2, 0.001)]),
+    '/arm': (50.0, [_Topic('/arm/joint_states', JointState(position=[0.0] * 6)),
+                    _Topic('/arm/wrench', TwistStamped(), 1, 0.0008),
+                    _Topic('/arm/goal', JointState(position=[0.0] * 6), 5, 0.002)]),
+    '/guard': (25.0, [_Topic('/guard/twist', TwistStamped()),
+                      _Topic('/guard/range', Range(), 1, 0.004),
+                      _Topic('/guard/state', BatteryState(), 25, 0.001)]),
+}
+"""Cycles a second and topics, by node; every node also logs from time to time."""
+
+
+def _write(path: str, seconds: float, seed: int) -> int:
+    """Write the bag with images, uncompressed, with rosbag's default size of chunks.
+
+    Returns:
+        the number of messages.
+    """
+    rng = random.Random(seed)
+    pixels = rng.getrandbits(8 * _IMAGE_BYTES).to_bytes(_IMAGE_BYTES, 'little')
+    messages = sorted(_messages(seconds, rng), key=lambda message: message[0])
+    with rosbag.Bag(path, 'w') as bag:
+        for stamp, node, topic, kind in messages:
+            time = genpy.Time.from_sec(stamp)
+            if kind is _IMAGE:
+                kind.data = pixels
+            bag.write(topic, kind, time, connection_header={
+                'topic': topic, 'callerid': node, 'type': kind._type, 'md5sum': kind._md5sum,
+                'message_definition': kind._full_text, 'latching': '0'})
+    return len(messages)
+
+
+def _messages(seconds: float, rng: random.Random) -> Iterator[Tuple[float, str, str, Any]]:
+    for node, (rate, topics) in _NODES.items():
+        stamp = _START_S + rng.random()
+        cycle = 0
+        while stamp < _START_S + seconds:
+            for topic in topics:
+                if cycle % topic.every == 0:
+                    delay = topic.delay * rng.uniform(0.5, 1.5)
+                    yield stamp + delay, node, topic.name, topic.kind
+            cycle += 1
+            stamp += max(rng.gauss(1.0, 0.03) / rate, _SHORTEST_STEP_S)
+        stamp = _START_S + rng.expovariate(1.0 / _LOG_EVERY_S)
+        log = Log(level=Log.INFO, name=node, msg='nothing out of the ordinary', line=42)
+        while stamp < _START_S + seconds:
+            yield stamp, node, '/rosout', log
+            stamp += rng.expovariate(1.0 / _LOG_EVERY_S)
 
 
 def _median(usages: Sequence[Usage], field: str) -> float:

@@ -3,13 +3,12 @@ section `core` of docs/performance.md.
 """
 from __future__ import annotations
 
-import argparse
 import json
 import statistics
 from pathlib import Path
 from typing import Any, Dict, List
 
-from page import publish
+import page
 
 DETECTORS = ('paper', 'evidence')
 _PER_MILLISECOND = {'ns': 1e-6, 'us': 1e-3, 'ms': 1.0}
@@ -73,12 +72,11 @@ def markdown(measured: Measured) -> str:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = page.parser('core', __doc__)
     parser.add_argument('raw', type=Path, help='JSON of Google Benchmark')
-    parser.add_argument('docs', type=Path, help='folder of performance.md')
     arguments = parser.parse_args()
     measured = summary(json.loads(arguments.raw.read_text()))
-    publish('core', measured, markdown(measured), arguments.docs)
+    page.publish('core', measured, markdown(measured), arguments.output)
 
 
 if __name__ == '__main__':

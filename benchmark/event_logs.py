@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 import time
+import timeit
 from typing import Any, Callable, Dict
 
 import page
@@ -19,12 +20,7 @@ _DAY_S = 86400
 
 def _cpu_s(work: Callable[[], object]) -> float:
     """Return the processor time of work, the least of several runs [s]."""
-    times = []
-    for _ in range(_RUNS):
-        before = time.process_time()
-        work()
-        times.append(time.process_time() - before)
-    return min(times)
+    return min(timeit.repeat(work, timer=time.process_time, repeat=_RUNS, number=1))
 
 
 def measure() -> Dict[str, Any]:

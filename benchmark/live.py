@@ -22,8 +22,8 @@ import rospy
 from sensor_msgs.msg import Imu
 
 import page
-from live_robot import LOAD_CORE, Configuration, Robot, pin, train, write_synthetic_model
-from live_subjects import Bare, Monitor, Record, Subject, usage
+from live_robot import (LOAD_CORE, Bare, Configuration, Monitor, Record, Robot, Subject, pin,
+                        train, usage, write_synthetic_model)
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.live.processes import Processes, own_master
@@ -51,11 +51,11 @@ class _Benchmark:
         self._seconds = seconds
         self._rounds = rounds
 
-    def run(self, rates: Sequence[int]) -> Dict[str, Any]:
+    def run(self) -> Dict[str, Any]:
         costs: List[Dict[str, Any]] = []
         result: Dict[str, Any] = dict(page.machine(), seconds=self._seconds,
                                       rounds=self._rounds, costs=costs)
-        for rate in rates:
+        for rate in TOPICS:
             # What a model knows, and does not come, raises an alarm: each learns what it judges.
             models = {image: self._folder / f'{rate}_{image}.model' for image in (False, True)}
             for image, model in models.items():
@@ -202,7 +202,10 @@ def markdown(result: Dict[str, Any]) -> str:
 def _costs(result: Dict[str, Any]) -> Iterator[str]:
     yield '| messages/s | topics | bare | `rosbag record` | monitor | / bare | MB |'
     yield '|--:' * 7 + '|'
-    configurations = _by_configuration(result['costs'])
+    configurations: Dict[Tuple[int, int, bool], Dict[str, Dict[str, Any]]] = {}
+    for row in result['costs']:
+        key = (row['rate'], row['topics'], row['image'])
+        configurations.setdefault(key, {})[row['subject']] = row
     for rate, topics in dict.fromkeys(key[:2] for key in configurations):
         rows = [configurations[key] for key in sorted(configurations) if key[:2] == (rate, topics)]
         cells = ['; '.join(f'{100 * row[name]["cpu_share"]:.1f}' for row in rows)
@@ -214,15 +217,6 @@ def _costs(result: Dict[str, Any]) -> Iterator[str]:
     dropped = sum(row['dropped'] for row in result['costs'] if row['subject'] == 'monitor')
     yield ''
     yield f'Missed by the monitor: {dropped:.0f}.'
-
-
-def _by_configuration(costs: List[Dict[str, Any]]
-                      ) -> Dict[Tuple[int, int, bool], Dict[str, Dict[str, Any]]]:
-    configurations: Dict[Tuple[int, int, bool], Dict[str, Dict[str, Any]]] = {}
-    for row in costs:
-        key = (row['rate'], row['topics'], row['image'])
-        configurations.setdefault(key, {})[row['subject']] = row
-    return configurations
 
 
 def _latency(latency: Dict[str, Any]) -> Iterator[str]:
@@ -245,8 +239,6 @@ def _ms(seconds: float) -> str:
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the benchmark; return the exit code."""
     parser = page.parser('live', __doc__)
-    parser.add_argument('--rates', type=int, nargs='+', default=list(TOPICS),
-                        choices=list(TOPICS), metavar='N', help='messages a second')
     parser.add_argument('--seconds', type=float, default=10.0, help='of each measurement')
     parser.add_argument('--rounds', type=int, default=3, help='of all subjects, in turn')
     arguments = parser.parse_args(argv)
@@ -254,9 +246,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         folder = Path(name)
         with own_master(folder, 'benchmark', pin(LOAD_CORE)) as processes:
             benchmark = _Benchmark(folder, processes, arguments.seconds, arguments.rounds)
-            result = benchmark.run(arguments.rates)
-    if set(arguments.rates) == set(TOPICS):
-        page.publish('live', result, markdown(result), arguments.output)
+            result = benchmark.run()
+    page.publish('live', result, markdown(result), arguments.output)
     return 0
 
 

@@ -33,18 +33,14 @@ def _train(types: int, path: str) -> Dict[str, Any]:
     before = time.process_time()
     middle = len(stamps) // 2
     for half, part in enumerate((slice(middle), slice(middle, None))):
-        learner.count(kinds, stamps[part], ids[part], _fingerprint_of(half))
+        fingerprint = next(number for number in itertools.count() if half_of(number) == half)
+        learner.count(kinds, stamps[part], ids[part], fingerprint)
     model = learner.model()
     trained = time.process_time()
     model.save(path)
     return {'events': len(stamps), 'train_s': trained - before,
             'save_s': time.process_time() - trained,
             'train_peak_bytes': 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}
-
-
-def _fingerprint_of(half: int) -> int:
-    """Return one of a recording that belongs to a half of the training."""
-    return next(number for number in itertools.count() if half_of(number) == half)
 
 
 def _load(path: str, watched_only: bool) -> Dict[str, Any]:

@@ -1,15 +1,19 @@
-"""Writes the tables of docs/performance.md from the JSON files of measurements."""
+"""What benchmarks share: they write docs/performance.md and the JSON files of its tables, and run
+programs to their end."""
 from __future__ import annotations
 
 import argparse
 import json
+import os
+import subprocess
+import time
 from pathlib import Path
-from typing import Any, Callable, Dict, Optional
+from typing import Any, Callable, Dict, NamedTuple, Optional, Sequence
 
 from self_awareness import METHOD
 from self_awareness_evaluation.pages import machine, write_section
 
-__all__ = ['machine', 'parser', 'publish', 'run']
+__all__ = ['Usage', 'built', 'machine', 'parser', 'publish', 'run', 'run_program']
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 
@@ -40,3 +44,43 @@ def run(name: str, about: Optional[str], measure: Callable[[], Dict[str, Any]],
     arguments = parser(name, about).parse_args()
     result = measure()
     publish(name, result, markdown(result), arguments.output)
+
+
+class Usage(NamedTuple):
+    """What a process used, in all its threads."""
+
+    wall_s: float
+    peak_bytes: int  # the most of its memory that was resident
+    read_bytes: int  # by read(2), from any file
+
+
+def run_program(command: Sequence[str]) -> Usage:
+    """Run a program to its end.
+
+    Raises:
+        RuntimeError: the program failed.
+    """
+    begin = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)  # keeps the counts of the process
+    wall = time.perf_counter() - begin
+    io = dict(line.split(': ') for line in
+              Path(f'/proc/{process.pid}/io').read_text().splitlines())
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = status
+    if status != 0:
+        raise RuntimeError(f'{" ".join(command)} failed')
+    return Usage(wall, 1024 * usage.ru_maxrss, int(io['rchar']))
+
+
+def built(name: str) -> str:
+    """Return the path of a program of this package.
+
+    Raises:
+        FileNotFoundError: it is not built, or its workspace is not sourced.
+    """
+    for prefix in os.environ.get('CMAKE_PREFIX_PATH', '').split(':'):
+        path = Path(prefix) / 'lib' / 'self_awareness' / name
+        if os.access(path, os.X_OK):
+            return str(path)
+    raise FileNotFoundError(f'{name} is not built, or its workspace not sourced')

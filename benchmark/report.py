@@ -13,6 +13,8 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from functools import reduce
+from operator import getitem
 from pathlib import Path
 from typing import Any, Dict, List
 
@@ -20,7 +22,6 @@ import numpy as np
 
 import page
 import timers
-from programs import run
 
 _TYPES = 500
 _SECONDS = 3600.0
@@ -42,7 +43,7 @@ def _write(path: str) -> int:
 
 def _run(program: str, *arguments: str) -> Dict[str, float]:
     """Run a program; return its time and the most memory that it had."""
-    used = run((sys.executable, '-B', '-c', _PROGRAM.format(program), *arguments))
+    used = page.run_program((sys.executable, '-B', '-c', _PROGRAM.format(program), *arguments))
     return {'wall_s': used.wall_s, 'peak_bytes': used.peak_bytes}
 
 
@@ -89,12 +90,7 @@ def measure() -> Dict[str, Any]:
 def markdown(result: Dict[str, Any]) -> str:
     """Return the medians of all runs."""
     def median(*keys: str) -> float:
-        values = []
-        for value in result['measured']:
-            for key in keys:
-                value = value[key]
-            values.append(value)
-        return statistics.median(values)
+        return statistics.median(reduce(getitem, keys, each) for each in result['measured'])
 
     return (f'{result["messages"]:,} messages of {result["types"]} event types in '
             f'{result["seconds"] / 60:.0f} minutes: `score` {median("score", "wall_s"):.1f} s, '
