@@ -13,10 +13,8 @@ from self_awareness import METHOD, Tuning, _core
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.output_files import replacing
 from self_awareness.workers import Processes
-from self_awareness_evaluation.records import (NORMAL, FaultRecord, Learning, Robot, System,
-                                               WindowedEvents)
-from self_awareness_evaluation.rows import (Row, Subject, fault_row, flat, load, normal_row,
-                                            save)
+from self_awareness_evaluation.records import NORMAL, Learning, Robot, System, WindowedEvents
+from self_awareness_evaluation.rows import Row, Subject, fault_row, flat, load, normal_row, save
 from self_awareness_evaluation.variants import Variant
 
 AT_ONCE = 16
@@ -73,36 +71,30 @@ def measure(robot_of: Callable[[], Robot], unit: Unit) -> Iterator[Row]:
     robot = robot_of()
     judges = list(_judges(unit, robot))
     for recording in robot.normal():
-        yield from (judge.normal_row(recording, robot) for judge in judges)
+        for by in judges:
+            yield Row(by.subject, NORMAL, refused=by.refused) if by.refused else normal_row(
+                by.subject, by.system.judge(recording), by.system.expected_per_hour,
+                by.watched(robot.components), len(robot.components))
     for fault in robot.faults():
-        yield from (judge.fault_row(fault) for judge in judges if judge.variant.faults)
+        for by in judges:
+            if by.refused and by.of_faults:
+                yield Row(by.subject, fault.kind, fault.source, refused=by.refused)
+            elif by.of_faults:
+                yield fault_row(by.subject, fault, by.system.judge(fault.recording),
+                                by.watched(set(fault.culprits)))
 
 
 @dataclass(frozen=True)
 class _Judge:
-    """A system that has learned; refused: why it cannot judge, empty: it can."""
+    """A system that has learned."""
 
     subject: Subject
-    variant: Variant
+    of_faults: bool  # whether it judges records with a fault, too
     system: System
-    refused: str = ''
+    refused: str = ''  # why it cannot judge; empty: it can
 
-    def normal_row(self, recording: WindowedEvents, robot: Robot) -> Row:
-        """Return what it says of normal operation."""
-        if self.refused:
-            return Row(self.subject, NORMAL, refused=self.refused)
-        return normal_row(self.subject, self.system.judge(recording),
-                          self.system.expected_per_hour, self._watched(robot.components),
-                          len(robot.components))
-
-    def fault_row(self, fault: FaultRecord) -> Row:
-        """Return what it says of a fault."""
-        if self.refused:
-            return Row(self.subject, fault.kind, fault.source, refused=self.refused)
-        return fault_row(self.subject, fault, self.system.judge(fault.recording),
-                         self._watched(set(fault.culprits)))
-
-    def _watched(self, components: Set[str]) -> Optional[int]:
+    def watched(self, components: Set[str]) -> Optional[int]:
+        """Return how many of some components it watches; None: it judges all together."""
         watched = self.system.watched
         return None if watched is None else len(watched & components)
 
@@ -115,7 +107,7 @@ def _judges(unit: Unit, robot: Robot) -> Iterator[_Judge]:
         if learning not in learned_from:
             learned_from[learning] = robot.training(learning), robot.calibration(learning)
         training, calibration = learned_from[learning]
-        judge = _Judge(unit.subject(variant), variant, variant.make(robot.graph))
+        judge = _Judge(unit.subject(variant), variant.faults, variant.make(robot.graph))
         try:
             judge.system.train(training)
             judge.system.calibrate(calibration)

@@ -253,9 +253,9 @@ def part(of: Tuple[int, int]) -> str:
     return percent(part_of(of))
 
 
-def of_all(counts: Tuple[int, int]) -> str:
-    """Return two counts of which the first is a part of the second."""
-    return f'{counts[0]} of {counts[1]}' if counts[1] else NONE
+def of_all(counts: Tuple[int, int], joint: str = 'of') -> str:
+    """Return two counts, such as one that is a part of the second; a dash where that is 0."""
+    return f'{counts[0]} {joint} {counts[1]}' if counts[1] else NONE
 
 
 def interval(found: Found) -> str:
@@ -299,9 +299,7 @@ def cells(rows: Sequence[Row], kinds: Mapping[str, Sequence[str]]) -> Dict[str, 
             if each.records else NONE,
             (each.within(SOON_S), each.within(), each.median_s), (0.0, 0.0, LEAST_LATENCY_S))
     every = Found.of(of_fault(rows, ''))
-    after, records = every.after
-    found['alarms after a restart'] = Cell(f'{after} after {records}' if records else NONE,
-                                           (after,), (0.0,))
+    found['alarms after a restart'] = Cell(of_all(every.after, 'after'), every.after[:1], (0.0,))
     for title, named in (('guilty first', every.first), ('guilty at the end', every.at_end)):
         found[title] = Cell(of_all(named), (named[1] - named[0],), (0.0,))
     return found

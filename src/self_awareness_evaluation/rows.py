@@ -82,7 +82,7 @@ class Row:
     # Who is to blame by then, and what is wrong; empty: nobody, or not known.
     culprit: str = ''
     kind: str = ''
-    excused: bool = False  # whether that is no node's fault (systems.EXCUSES)
+    excused: bool = False  # whether that is no node's fault (EXCUSES)
     # Begin and end of the incident that it belongs to, or of the last one that began in the fault;
     # None: there is none, or it is not over.
     opened_s: Optional[float] = None

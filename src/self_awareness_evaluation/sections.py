@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from operator import attrgetter
 from typing import Callable, Dict, List, Sequence, Tuple
 
 from self_awareness import Tuning
@@ -11,8 +12,8 @@ from self_awareness_evaluation.families.protocol import DEATH, KINDS, NEVER, SEL
 from self_awareness_evaluation.families.scene import (CRASH, FLOOD, HALF_RATE, LATE, MISSES, OTHER,
                                                       RESTART, SILENT, STARVED)
 from self_awareness_evaluation.figures import (NONE, WITHIN_S, Cell, Found, Quiet, cells, grouped,
-                                               interval, median, normal, number, of_fault, part,
-                                               percent, rate, seconds, share, table)
+                                               interval, median, normal, number, of_all, of_fault,
+                                               part, percent, rate, seconds, share, table)
 from self_awareness_evaluation.outages import CASES, END, OUTAGE, Case, Span
 from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
 from self_awareness_evaluation.records import NORMAL
@@ -48,6 +49,7 @@ ALL = 'all'  # families together
 _SUSPICIONS = (OTHER, NEVER)  # that are no alarms
 
 _MOST_SOURCES = 2
+_FAMILY = attrgetter('subject.family')  # of a row
 _WITHIN = ' / '.join(f'{each:g}' for each in WITHIN_S)
 
 # Of the ablation, by column.
@@ -139,7 +141,7 @@ def families(rows: Sequence[Row]) -> Section:
     main = rows[0].subject
     by_learning = grouped((row for row in rows if (row.subject.system, row.subject.budget)
                            == (main.system, main.budget)), lambda row: row.subject.learning)
-    names = list(grouped(rows, _family))
+    names = list(grouped(rows, _FAMILY))
     seeds = grouped(rows, lambda row: row.subject.robot.rpartition(' ')[2])
     hours = Quiet.of(normal(next(iter(by_learning.values())))).hours
     told = (f'{len(names)} families, seeds {", ".join(seeds)}, {hours:.3g} h of normal '
@@ -148,7 +150,7 @@ def families(rows: Sequence[Row]) -> Section:
         RESULTS: [told, '', *_results(by_learning)],
         RESEARCH: [told, '', *_of_families(names, by_learning), '', '### All together', '',
                    *_pooled(rows), '',
-                   *(f'- `{name}`: {FAMILIES[name].told}' for name in names)]}, _family)
+                   *(f'- `{name}`: {FAMILIES[name].told}' for name in names)]}, _FAMILY)
 
 
 def started(learning: str) -> str:
@@ -182,7 +184,7 @@ def _of_families(families: Sequence[str], by_learning: Dict[str, List[Row]]) -> 
               for kind in kinds), 'alarms after a restart', 'watched', 'false alarms from']
     body = []
     for family in [*families, ALL]:
-        rows = {learning: [row for row in of_learning if family in (ALL, _family(row))]
+        rows = {learning: [row for row in of_learning if family in (ALL, _FAMILY(row))]
                 for learning, of_learning in by_learning.items()}
         quiet = Quiet.of(normal(rows[first]))
         body.append([
@@ -190,7 +192,9 @@ def _of_families(families: Sequence[str], by_learning: Dict[str, List[Row]]) -> 
             percent(quiet.standing), number(quiet.warnings_per_hour),
             _crashes(rows[first]), *(_found(rows[last if kind == LATE else first], kind)
                                      for kind in kinds),
-            _after(rows[first]), _watched(quiet), _sources(quiet)])
+            of_all(Found.of(of_fault(rows[first], RESTART)).after, 'after'), _watched(quiet),
+            '; '.join(f'{text} {count}' for text, count in quiet.evidence[:_MOST_SOURCES])
+            or NONE])
     return [f'Of what was learned from {started(first)}, if a column says nothing else. *First*, '
             '*end*: the right node is blamed when the alarm is raised, and when the fault ends; '
             'or nobody, where no node is guilty.', '', *table(head, body)]
@@ -208,7 +212,7 @@ def _pooled(rows: Sequence[Row]) -> List[str]:
             number(quiet.expected), percent(quiet.kept) if quiet.expected >= 0.0 else NONE,
             number(quiet.warnings_per_hour), _watched(quiet), _crashes(of_subject),
             *(_found(of_subject, kind) for kind in KINDS if kind not in (CRASH, RESTART)),
-            _after(of_subject)])
+            of_all(Found.of(of_fault(of_subject, RESTART)).after, 'after')])
     return table(['system', 'learned from', 'budget', 'false alarms/h', 'promised',
                   'robots within the promise', 'WARN/h', 'watched',
                   f'crashes, within {_WITHIN} s',
@@ -220,10 +224,6 @@ def _of_kind(rows: Sequence[Row], kind: str) -> Found:
     """Return how a kind was found; of what is no alarm, by its suspicion."""
     found = Found.of(of_fault(rows, kind))
     return replace(found, latencies_s=found.noticed_s) if kind in _SUSPICIONS else found
-
-
-def _family(row: Row) -> str:
-    return row.subject.family
 
 
 def _crashes(rows: Sequence[Row]) -> str:
@@ -245,17 +245,8 @@ def _blame(found: Found) -> str:
     return f', first {part(found.first)}, end {part(found.at_end)}'
 
 
-def _after(rows: Sequence[Row]) -> str:
-    count, records = Found.of(of_fault(rows, RESTART)).after
-    return f'{count} after {records}' if records else NONE
-
-
 def _watched(quiet: Quiet) -> str:
     return f'{number(quiet.watched)} of {number(quiet.components)}'
-
-
-def _sources(quiet: Quiet) -> str:
-    return '; '.join(f'{text} {count}' for text, count in quiet.evidence[:_MOST_SOURCES]) or NONE
 
 
 def recordings(rows: Sequence[Row]) -> Section:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import subprocess
 import time
 from typing import ContextManager, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
@@ -34,7 +35,7 @@ class FollowMe:
         """
         self._scenario = load_scenario()
         self._processes = processes
-        self._seed = 1000 * seed
+        self._seeds = itertools.count(1000 * seed + 1)
         self._speed = speed
         self._respawn = respawn
         self._running: Optional[subprocess.Popen] = None
@@ -49,7 +50,7 @@ class FollowMe:
         with heard(self._expected(self.topics)):
             self._running = self._processes.start(
                 'robot', 'roslaunch', '--wait', 'self_awareness', 'follow_me.launch',
-                f'seed:={self._next_seed()}', f'speed:={self._speed:g}',
+                f'seed:={next(self._seeds)}', f'speed:={self._speed:g}',
                 f'respawn:={str(self._respawn).lower()}')
         wait(WARM_UP_S, 'warming up')
 
@@ -108,7 +109,7 @@ class FollowMe:
             if not self._respawn:
                 self._processes.start(
                     name, 'rosrun', 'self_awareness', 'component', name, '--seed',
-                    str(self._next_seed()), '--speed', f'{self._speed:g}', f'__name:={name}')
+                    str(next(self._seeds)), '--speed', f'{self._speed:g}', f'__name:={name}')
 
     @contextlib.contextmanager
     def _silenced(self) -> Iterator[float]:
@@ -129,7 +130,3 @@ class FollowMe:
 
     def _expected(self, components: Iterable[str]) -> Sequence[Tuple[str, str]]:
         return [(f'/{name}', self.topics[name]) for name in components]
-
-    def _next_seed(self) -> int:
-        self._seed += 1
-        return self._seed

@@ -78,8 +78,8 @@ class Processes:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for process in reversed(self._running):
-            self._end(process)
+        for process in self._running[::-1]:
+            self.end(process)
 
     def start(self, log: str, *command: str) -> subprocess.Popen:
         """Start a program; its output is appended to a log of that name."""
@@ -103,28 +103,21 @@ class Processes:
 
     def end(self, process: subprocess.Popen) -> None:
         """Interrupt a program and all that it started, and kill what does not end."""
-        self._end(process)
-        self._running.remove(process)
-
-    @staticmethod
-    def _end(process: subprocess.Popen) -> None:
         deadline = time.monotonic() + _END_WITHIN_S
         _signal(process, signal.SIGINT)
-        while _group_runs(process) and time.monotonic() < deadline:
+        while _signal(process, 0) and time.monotonic() < deadline:
             time.sleep(_POLL_S)
         _signal(process, signal.SIGKILL)
         process.wait()
+        self._running.remove(process)
 
 
-def _signal(process: subprocess.Popen, number: int) -> None:
-    with contextlib.suppress(ProcessLookupError):
-        os.killpg(process.pid, number)
-
-
-def _group_runs(process: subprocess.Popen) -> bool:
+def _signal(process: subprocess.Popen, number: int) -> bool:
+    """Send a signal, or none (0), to a program and all that it started; return whether any of
+    them still runs."""
     process.poll()  # reaps the leader, which would count otherwise
     try:
-        os.killpg(process.pid, 0)
+        os.killpg(process.pid, number)
     except ProcessLookupError:
         return False
     return True
