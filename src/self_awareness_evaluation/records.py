@@ -2,7 +2,8 @@
 
 Recordings are events in memory, cut into the windows that all systems judge: those are
 DEFAULT_WINDOW long and lie on the absolute time grid. A system learns from some, and judges
-others."""
+others.
+"""
 from __future__ import annotations
 
 import zlib
@@ -22,6 +23,12 @@ NORMAL = 'normal'  # what a record without a fault is called, in place of the ki
 
 FAMILIES, OWN, REAL = 'families', 'own robot', 'recordings'
 """Where records come from: robots drawn by seed, the simulated follow-me robot, real robots."""
+
+ALARM, SUSPICION = 'ERROR', 'WARN'  # levels, as diagnostics call them
+EXCUSES = ('busy machine', 'all silent', 'new mode')  # kinds of alarms that are no node's fault
+
+FALSE_POSITIVE_RATE = 0.001
+"""The share of normal windows of the calibration that may score below the threshold."""
 
 
 @dataclass(frozen=True)
@@ -137,13 +144,6 @@ class Robot:
     # Returns normal operation, recording by recording.
     normal: Callable[[], Iterable[WindowedEvents]]
     faults: Callable[[], Iterable[FaultRecord]]  # returns the recordings with a fault
-
-
-ALARM, SUSPICION = 'ERROR', 'WARN'  # levels, as diagnostics call them
-EXCUSES = ('busy machine', 'all silent', 'new mode')  # kinds of alarms that are no node's fault
-
-FALSE_POSITIVE_RATE = 0.001
-"""The share of normal windows of the calibration that may score below the threshold."""
 
 
 @dataclass(frozen=True)

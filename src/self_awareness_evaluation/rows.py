@@ -5,7 +5,7 @@ Rows are kept in CSV files, for other programs, too.
 from __future__ import annotations
 
 import csv
-from dataclasses import MISSING, Field, dataclass, fields, is_dataclass, replace
+from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
 from pathlib import Path
 from typing import (Any, Dict, List, Optional, Sequence, Tuple, Type, TypeVar, Union, get_args,
                     get_origin, get_type_hints)
@@ -227,22 +227,18 @@ def load(path: Path, row_type: Type[_Row]) -> List[_Row]:
     return rows
 
 
-def _row(cells: Dict[str, str], row_type: Type[_Row]) -> _Row:
+def _row(cells: Dict[str, str], row_type: Any) -> Any:
     hints = get_type_hints(row_type)
-    dataclass_type: Any = row_type
-    return row_type(**{field.name: _field(cells, field, hints[field.name])
-                       for field in fields(dataclass_type)})
-
-
-def _field(cells: Dict[str, str], field: Field, kind: Any) -> Any:
-    if is_dataclass(kind) and isinstance(kind, type):
-        return _row(cells, kind)
-    text = cells.get(field.name)
-    if text is None:
-        if field.default is MISSING:
+    values = {}
+    for field in fields(row_type):
+        kind, text = hints[field.name], cells.get(field.name)
+        if is_dataclass(kind):
+            values[field.name] = _row(cells, kind)
+        elif text is not None:
+            values[field.name] = _parsed(field.name, text, kind)
+        elif field.default is MISSING:
             raise ValueError(f'there is no {field.name}')
-        return field.default
-    return _parsed(field.name, text, kind)
+    return row_type(**values)
 
 
 def _parsed(name: str, text: str, kind: Any) -> Any:

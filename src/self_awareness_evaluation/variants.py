@@ -109,13 +109,9 @@ def side_by_side(systems: Sequence[str], learnings: Sequence[Optional[Learning]]
                  ) -> List[Variant]:
     """Return systems as they are, but for one change of the method; learnings and budgets come in
     turn, and faults are judged with the first budget."""
-    found = []
-    for learning in learnings:
-        for name in systems:
-            found += ([Variant(name, learning, change, budget, budget == budgets[0])
-                       for budget in budgets] if name in EVIDENCE
-                      else [Variant(name, learning)])
-    return found
+    return [Variant(name, learning, change, budget, budget == budgets[0]) if name in EVIDENCE
+            else Variant(name, learning) for learning in learnings for name in systems
+            for budget in budgets[:None if name in EVIDENCE else 1]]
 
 
 def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Sequence[str]] = None
