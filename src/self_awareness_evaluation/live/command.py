@@ -12,7 +12,7 @@ from typing import Any, Iterator, List, Optional, Sequence
 from self_awareness import progress
 from self_awareness.commands import cli
 from self_awareness_evaluation import options
-from self_awareness_evaluation.live.rows import Row
+from self_awareness_evaluation.live.rows import Row, of_faults, of_recovery, of_soak
 from self_awareness_evaluation.pages import RESULTS, machine, write_section, written_by
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.rows import save
@@ -79,12 +79,12 @@ def _add_session(parser: argparse.ArgumentParser, name: str, learning: Learning,
 def _run(arguments: argparse.Namespace, command: str) -> None:
     """Run a session, whose rows are saved after each of them, and write its section."""
     # ROS is imported only where a session runs.
-    from self_awareness_evaluation.live import plans, results, session
+    from self_awareness_evaluation.live import plans, session
     from self_awareness_evaluation.live.processes import own_master
-    planned, told = {'live': (plans.live, results.of_faults),
-                     'nodes': (plans.nodes, results.of_faults),
-                     'soak': (plans.soak, results.of_soak),
-                     'recovery': (plans.with_recovery, results.of_recovery)}[arguments.name]
+    planned, told = {'live': (plans.live, of_faults),
+                     'nodes': (plans.nodes, of_faults),
+                     'soak': (plans.soak, of_soak),
+                     'recovery': (plans.with_recovery, of_recovery)}[arguments.name]
     path = (arguments.output / arguments.page).with_name(f'{arguments.name}.csv')
     rows: List[Row] = []
 

@@ -10,15 +10,13 @@ from typing import ContextManager, Dict, Iterable, Iterator, List, Optional, Seq
 from self_awareness_evaluation.live.listeners import TopicListener, heard
 from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, WARM_UP_S, Processes,
                                                       await_condition, wait)
+from self_awareness_evaluation.live.rows import CRASH, DOUBLE, HALF, HANG
 from self_awareness_evaluation.live.session import broken_by, stopped
 from self_awareness_evaluation.simulated import default_faults
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Crash, Intruder, Silence
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import load_scenario
-
-CRASH, HANG, HALF, DOUBLE = 'crash', 'hang', 'half', 'double'
-"""Kinds of faults that hit any component: killed, its process stopped, at half or double rate."""
 
 
 class FollowMe:

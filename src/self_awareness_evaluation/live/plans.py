@@ -16,11 +16,12 @@ from self_awareness.msg import RecoveryAction, RecoveryActions
 from self_awareness.recovery import history
 from self_awareness.recovery.ladder import SHORTEST_HEALING_S
 from self_awareness.recovery.node_process import process_of
-from self_awareness_evaluation.live.follow_me import CRASH, HANG, FollowMe
+from self_awareness_evaluation.live.follow_me import FollowMe
 from self_awareness_evaluation.live.listeners import TopicListener
 from self_awareness_evaluation.live.packaged import FAULTS, PackagedSystem
 from self_awareness_evaluation.live.processes import Processes, becomes_true
-from self_awareness_evaluation.live.rows import AT_RANDOM, HANGS, RESTARTED, Row
+from self_awareness_evaluation.live.rows import (AT_RANDOM, CRASH, DELAY_S, HANG, HANGS, RESTARTED,
+                                                 Row)
 from self_awareness_evaluation.live.session import BAGS, EVENTS, Plan, Step, bursts
 from self_awareness_evaluation.records import NORMAL, Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
@@ -53,8 +54,6 @@ _SHARE_OF_SHORT = 0.15
 _VICTIM = 'player'
 _BACK_WITHIN_S = 60.0
 _CRASH_RESPAWNED_S = 1.0  # who was killed is back at once
-
-DELAY_S = 1.0  # of `recovery`: an alarm stands for so long before a node is restarted [s]
 
 HEALED_S = max(DELAY_S, SHORTEST_HEALING_S) + 1.0
 """After so long without an alarm, the next fault is a new one, and not what the last step did not

@@ -16,11 +16,11 @@ import rosgraph
 import rosnode
 
 from self_awareness_evaluation.live import packaged, plans, session
-from self_awareness_evaluation.live.follow_me import CRASH, DOUBLE, HALF, HANG, FollowMe
+from self_awareness_evaluation.live.follow_me import FollowMe
 from self_awareness_evaluation.live.packaged import CAMERAS_HZ, FAULTS, HALF_RATE, NODES
 from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
                                                       free_port, unregister)
-from self_awareness_evaluation.live.rows import ERROR, Status
+from self_awareness_evaluation.live.rows import CRASH, DOUBLE, ERROR, HALF, HANG, Status
 from self_awareness_evaluation.live.session import Plan, Step, used
 from self_awareness_evaluation.records import Learning
 

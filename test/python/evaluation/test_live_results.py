@@ -10,12 +10,12 @@ from typing import List, Optional, Tuple
 import pytest
 
 from self_awareness_evaluation import evaluate
-from self_awareness_evaluation.live import command, results
-from self_awareness_evaluation.live.plans import DELAY_S
-from self_awareness_evaluation.live.results import (BACK_WITHIN_S, MUST_BE_FOUND_S, not_mended,
-                                                    of_healthy, slope_mb_per_hour)
-from self_awareness_evaluation.live.rows import (AT_RANDOM, ERROR, HANGS, RESTARTED, WARN,
-                                                 Incident, Row, Status, measure)
+from self_awareness_evaluation.live import command
+from self_awareness_evaluation.live.rows import (AT_RANDOM, BACK_WITHIN_S, DELAY_S, ERROR, HANGS,
+                                                 MUST_BE_FOUND_S, RESTARTED, WARN, Incident, Row,
+                                                 Status, measure, not_mended, of_faults,
+                                                 of_healthy, of_recovery, of_soak,
+                                                 slope_mb_per_hour)
 from self_awareness_evaluation.pages import RESULTS
 from self_awareness_evaluation.rows import AFTERMATH_S, load
 
@@ -25,13 +25,13 @@ DOCS = Path(__file__).resolve().parents[3] / 'docs'
 @pytest.mark.parametrize('name', ['live', 'nodes'])
 def test_the_results_in_the_repository_are_those_of_their_rows(name: str) -> None:
     folder = DOCS / 'evaluation'
-    lines, _ = results.of_faults(load(folder / f'{name}.csv', Row))
+    lines, _ = of_faults(load(folder / f'{name}.csv', Row))
     section = (folder / RESULTS).read_text(encoding='utf-8').partition(f'<!-- {name} -->')[2]
     assert '\n'.join(lines) in section.partition(f'<!-- /{name} -->')[0]
 
 
 def test_the_faults_of_the_soak_in_the_repository_are_those_of_its_rows() -> None:
-    lines, wrong = results.of_soak(load(DOCS / 'reliability' / 'soak.csv', Row))
+    lines, wrong = of_soak(load(DOCS / 'reliability' / 'soak.csv', Row))
     _, head, faults = '\n'.join(lines).partition('| fault |')
     assert faults and head + faults in (DOCS / command.RELIABILITY).read_text(encoding='utf-8')
     assert wrong == []
@@ -46,7 +46,7 @@ def test_a_session_is_told_in_a_line_for_each_kind() -> None:
             replace(crash, round=4, latency_s=None, void='the alarm stood'), quiet,
             replace(quiet, alarms=0), replace(quiet, fault='bursts', lasted_s=90.0),
             replace(crash, fault='lat', latency_s=None, first=None)]
-    assert results.of_faults(rows)[0] == [
+    assert of_faults(rows)[0] == [
         '- faults: alarms 2 of 4, median 0.40 s; WARN or alarm 3 of 4, median 0.20 s; '
         'the right node first 1 of 2; never an alarm: lat',
         '- undisturbed, 12 min: false alarms 1 (95 %: 0.9 to 28.3 an hour), suspicions 4, '
@@ -68,20 +68,20 @@ CRASH = Row('crash:slam', 'slam', onset=100.0, lasted_s=10.0, recovered_s=11.0, 
 
 def test_a_soak_says_what_is_wrong() -> None:
     good = [normal(0.0), CRASH, normal(130.0)]
-    lines, wrong = results.of_soak(good)
+    lines, wrong = of_soak(good)
     text = '\n'.join(lines)
     assert wrong == [] and '1600 messages a second' in text and '0 of 1' in text
     assert '| crash | 1 | 1 | 0.60 s | 0.60 s | 1 | 2.00 s | 2.00 s |' in text
     assert 'not measured' in text, 'the soak is too short for a slope'
     short = replace(CRASH, onset=125.0, lasted_s=1.5, latency_s=None, fault='hang:slam')
-    assert '| hang of less than 2 s | 1 | 0 |' in '\n'.join(results.of_soak([*good, short])[0])
+    assert '| hang of less than 2 s | 1 | 0 |' in '\n'.join(of_soak([*good, short])[0])
     for bad, word in (
             ([normal(0.0, alarms=1), CRASH], 'false alarm after 0 s: why'),
             ([normal(0.0), replace(CRASH, latency_s=None)], 'crash:slam at 100 s was missed'),
             ([normal(0.0), replace(CRASH, cleared_s=math.inf)], 'the alarm did not clear'),
             ([replace(normal(at), memory_mb=50.0 + at / 2400.0) for at in range(0, 1500, 100)],
              'memory grows by 1.50 MB')):
-        failure, = results.of_soak(bad)[1]
+        failure, = of_soak(bad)[1]
         assert word in failure
 
 
@@ -129,7 +129,7 @@ def test_who_hangs_for_long_has_to_be_restarted() -> None:
 def test_in_time_is_5_s_and_the_delay_after_the_alarm(back_s: Optional[float],
                                                       in_time: bool) -> None:
     hang = replace(HANG, round=HANGS, blamed_s=0.3, back_s=back_s, lasted_s=1.0)
-    lines, wrong = results.of_recovery([hang])
+    lines, wrong = of_recovery([hang])
     assert (wrong == []) == in_time and f'| all | {int(in_time)} of 1 |' in lines[2]
 
 
@@ -137,7 +137,7 @@ def test_a_recovery_says_what_is_wrong() -> None:
     rows = [replace(HANG, round=HANGS, onset=50.0, blamed_s=0.3, back_s=3.0), HANG,
             restart('slam', 52.0), restart('slam', 103.0), restart('base', 104.0),
             replace(HANG, fault='hang:camera', node='camera', onset=200.0, lasted_s=40.0)]
-    lines, wrong = results.of_recovery(rows)
+    lines, wrong = of_recovery(rows)
     text = '\n'.join(lines)
     assert 'median 0.30 s, longest 0.30 s' in text and 'median 3.00 s' in text
     assert '| faults at random, in 2 minutes |  | 2 |' in text
