@@ -16,8 +16,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import (AbstractSet, Any, Dict, Hashable, Iterable, List, NamedTuple, Optional,
-                    Sequence, Set, Tuple)
+from typing import (AbstractSet, Any, Callable, Dict, Hashable, Iterable, List, NamedTuple,
+                    Optional, Sequence, Set, Tuple)
 
 import numpy as np
 
@@ -202,22 +202,21 @@ def incidents_of(found: Iterable[Alarm], graph: AbstractSet[Tuple[str, str, str]
 class Peer:
     """A system whose windows score the largest deviation from bounds, negated; it blames whose is
     the largest. Persistence is that of all other systems.
+
+    Args:
+        key: returns what has bounds: the topic, or the event type itself.
     """
 
     threshold = 0.0
     expected_per_hour = None
 
-    def __init__(self) -> None:
+    def __init__(self, key: Callable[[EventType], Hashable]) -> None:
+        self._key = key
         self.bounds: Dict[Hashable, Any] = {}
         """By topic or event type; one without is not watched."""
         self._sources: Dict[Hashable, Dict[str, None]] = {}
         """By topic or event type, in the order of their coming."""
         self._last: Optional[Tuple[WindowedEvents, np.ndarray]] = None
-
-    @staticmethod
-    def key(event_type: EventType) -> Hashable:
-        """Return what has bounds: the topic, or the event type itself."""
-        raise NotImplementedError
 
     @staticmethod
     def deviation(bounds: Any, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
@@ -259,7 +258,7 @@ class Peer:
         """Return the deviations, [key, window]."""
         # Every alarm of a recording asks for them again.
         if self._last is None or self._last[0] is not recording:
-            ends, stamps = recording.starts() + DEFAULT_WINDOW, stamps_by(recording, self.key)
+            ends, stamps = recording.starts() + DEFAULT_WINDOW, stamps_by(recording, self._key)
             deviations = [self.deviation(bounds, stamps.get(key, _NEVER), ends)
                           for key, bounds in self.bounds.items()]
             self._last = recording, np.array(deviations).reshape(len(deviations), len(ends))
@@ -268,8 +267,8 @@ class Peer:
     def learned(self, recording: WindowedEvents) -> Dict[Hashable, np.ndarray]:
         """Return the stamps of the events by topic or event type [ns]; note their sources."""
         for event_type in recording.event_types:
-            self._sources.setdefault(self.key(event_type), {})[event_type.source] = None
-        return stamps_by(recording, self.key)
+            self._sources.setdefault(self._key(event_type), {})[event_type.source] = None
+        return stamps_by(recording, self._key)
 
 
 class Bounds(NamedTuple):
@@ -291,13 +290,8 @@ class FrequencyMonitor(Peer):
     """
 
     def __init__(self, rate: float = FALSE_POSITIVE_RATE) -> None:
-        super().__init__()
+        super().__init__(lambda event_type: event_type.scope)
         self._rate = rate
-
-    @staticmethod
-    def key(event_type: EventType) -> str:
-        """See Peer."""
-        return event_type.scope
 
     @staticmethod
     def deviation(bounds: Bounds, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
@@ -360,10 +354,8 @@ class GapMonitor(Peer):
     """The bounds of every event type that came at least twice in a recording; what lies beyond
     them is abnormal, and the calibration widens them."""
 
-    @staticmethod
-    def key(event_type: EventType) -> EventType:
-        """See Peer."""
-        return event_type
+    def __init__(self) -> None:
+        super().__init__(lambda event_type: event_type)
 
     @staticmethod
     def deviation(bounds: GapBounds, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
@@ -375,11 +367,7 @@ class GapMonitor(Peer):
         return bounds.deviation(ages, _counts(stamps, ends))
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Find the bounds."""
-        self.calibrate(recordings)
-
-    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Widen the bounds to what further recordings of normal operation hold."""
+        """Find the bounds, or widen them to what further recordings of normal operation hold."""
         self._last = None
         for recording in recordings:
             ends = recording.starts() + DEFAULT_WINDOW
@@ -393,6 +381,8 @@ class GapMonitor(Peer):
                     max(known.longest, float(np.diff(stamps).max())),
                     min(known.fewest, counts.min(initial=np.inf)),
                     max(known.most, counts.max(initial=0.0)))
+
+    calibrate = train
 
 
 def messages_in_span(stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
