@@ -7,11 +7,10 @@ import subprocess
 import time
 from typing import ContextManager, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
-from self_awareness_evaluation.live.listeners import TopicListener, heard
 from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, WARM_UP_S, Processes,
                                                       await_condition, wait)
 from self_awareness_evaluation.live.rows import CRASH, DOUBLE, HALF, HANG
-from self_awareness_evaluation.live.session import broken_by, stopped
+from self_awareness_evaluation.live.session import TopicListener, broken_by, heard, stopped
 from self_awareness_evaluation.simulated import default_faults
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Crash, Intruder, Silence

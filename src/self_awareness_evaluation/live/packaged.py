@@ -17,9 +17,8 @@ from nav_msgs.msg import Odometry
 from sensor_msgs.msg import (BatteryState, CameraInfo, Image, Imu, LaserScan, MagneticField,
                              NavSatFix)
 
-from self_awareness_evaluation.live.listeners import heard
 from self_awareness_evaluation.live.processes import WARM_UP_S, Processes, unregister, wait
-from self_awareness_evaluation.live.session import BUSY, broken_by, stopped
+from self_awareness_evaluation.live.session import BUSY, broken_by, heard, stopped
 from self_awareness_follow_me import induction
 
 

@@ -17,12 +17,11 @@ from self_awareness.recovery import history
 from self_awareness.recovery.ladder import SHORTEST_HEALING_S
 from self_awareness.recovery.node_process import process_of
 from self_awareness_evaluation.live.follow_me import FollowMe
-from self_awareness_evaluation.live.listeners import TopicListener
 from self_awareness_evaluation.live.packaged import FAULTS, PackagedSystem
 from self_awareness_evaluation.live.processes import Processes, becomes_true
 from self_awareness_evaluation.live.rows import (AT_RANDOM, CRASH, DELAY_S, HANG, HANGS, RESTARTED,
                                                  Row)
-from self_awareness_evaluation.live.session import BAGS, EVENTS, Plan, Step, bursts
+from self_awareness_evaluation.live.session import BAGS, EVENTS, Plan, Step, TopicListener, bursts
 from self_awareness_evaluation.records import NORMAL, Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
 from self_awareness_follow_me.induction import process_id
