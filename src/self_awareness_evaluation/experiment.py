@@ -176,5 +176,16 @@ class KeptRows:
 def _method() -> str:
     """Return what tells one method from another: version, numbers, and how it was built."""
     numbers = [f'{number.name}={number.default:g}' for number in Tuning.numbers()]
-    build = zlib.crc32(Path(_core.__file__).read_bytes())
-    return f'method {METHOD}, build {build:08x}: {" ".join([*Tuning.channels(), *numbers])}'
+    return f'method {METHOD}, build {_build():08x}: {" ".join([*Tuning.channels(), *numbers])}'
+
+
+def _build() -> int:
+    """Return a checksum of the module and of the libraries that it has loaded: the method is in
+    one of these."""
+    with open('/proc/self/maps', encoding='utf-8') as maps:
+        files = {line.split(maxsplit=5)[-1].rstrip() for line in maps
+                 if '/libself_awareness_' in line}
+    checksum = 0
+    for path in (_core.__file__, *sorted(files)):
+        checksum = zlib.crc32(Path(path).read_bytes(), checksum)
+    return checksum
