@@ -10,12 +10,6 @@
 #include "self_awareness/ros/bag/event_log_writer.h"
 
 namespace self_awareness {
-namespace {
-
-constexpr std::size_t kMegabyte = 1000000;
-constexpr std::int64_t kNameStep = 1000000;  // names tell milliseconds [ns]
-
-}  // namespace
 
 RecorderFolder folderOf(const RecorderParameters& parameters) {
   return {parameters.directory, parameters.name, static_cast<std::size_t>(parameters.files),

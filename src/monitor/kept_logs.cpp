@@ -17,8 +17,6 @@ namespace {
 namespace filesystem = boost::filesystem;
 
 constexpr char kBeside[] = ".kept";
-constexpr std::uint64_t kBytesPerMegabyte = 1000000;
-constexpr std::int64_t kStepOfNames = 1000000;  // names tell milliseconds [ns]
 
 /// "normal_2026-11-22-05-10-33.123.bag": names sort as they were given.
 std::string nameOf(std::int64_t wall_time) {
@@ -130,15 +128,15 @@ void KeptLogs::write() {
   log.graph = source.graph;
   log.parts = parts_;
   ++report_.kept;
-  named_at_ = std::max(wallNow(), named_at_ + kStepOfNames);
-  writer_.add({folder_ + "/" + nameOf(named_at_), bytes_,
-               [log = std::move(log), folder = folder_,
-                most = static_cast<std::uint64_t>(parameters_.disk) *
-                       kBytesPerMegabyte](const std::string& file) {
-                 filesystem::create_directories(folder);
-                 ros1::writeLog(log, file);
-                 removeOldest(folder, most);
-               }});
+  named_at_ = std::max(wallNow(), named_at_ + kNameStep);
+  writer_.add(
+      {folder_ + "/" + nameOf(named_at_), bytes_,
+       [log = std::move(log), folder = folder_,
+        most = static_cast<std::uint64_t>(parameters_.disk) * kMegabyte](const std::string& file) {
+         filesystem::create_directories(folder);
+         ros1::writeLog(log, file);
+         removeOldest(folder, most);
+       }});
 }
 
 void KeptLogs::onRobotStart(std::int64_t at) {

@@ -6,6 +6,11 @@
 
 namespace self_awareness {
 
+/// Two names differ by this [ns].
+constexpr std::int64_t kNameStep = 1000000;
+/// Bytes of one; space on the disk is given in megabytes.
+constexpr std::uint64_t kMegabyte = 1000000;
+
 /// A time [ns since 1970] in the name of a file, by UTC and in milliseconds:
 /// "2026-11-22-05-10-33.123". Names sort as the times do.
 std::string timeInFileName(std::int64_t wall_time);
