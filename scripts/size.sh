@@ -34,6 +34,6 @@ row 'messages and services' "$(files '\.(msg|srv)$' | wc -l)"
 row '  their fields' "$(files '\.(msg|srv)$' |
   xargs git grep -hE '^[a-zA-Z][a-zA-Z0-9_/]*(\[[0-9]*\])? +[a-z][a-z0-9_]*( |$)' "$commit" -- | wc -l)"
 row 'numbers in Tuning' "$(git show "$commit:include/self_awareness/core/evidence/tuning.h" |
-  grep -cE '^  double [a-z_]+ = ')"
+  sed '/^};/q' | grep -cE '^  double [a-z_]+ = ')"
 row 'pages' "$(files '(^README|^docs/.*)\.md$' | wc -l)"
 row '  their words' "$(files '(^README|^docs/.*)\.md$' | xargs git grep -h '' "$commit" -- | wc -w)"

@@ -171,7 +171,6 @@ void bindEvidence(py::module& m) {
       .def("delays", &delaysOf, py::arg("from_id"), py::arg("to_id"),
            "counts of the delays in training, of what is watched: list of (shortest delay [ns],\n"
            "count) by bin; zeros for other pairs")
-      .def("overdue", &evidence::Model::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),
            py::arg("limits") = py::none(),
            "Evidence at the end of every window of a recording: float64 [windows, tracks].\n"

@@ -173,8 +173,8 @@ TEST_F(FileVersionTest, AModelOfAFormatOfNoReleaseIsRefusedWithTheWayOut) {
   former.oldest_reader = former.format;
   for (const std::optional<FileVersion>& version : {std::optional(former), {std::nullopt}}) {
     const std::string error = modelError(rewritten(model(), version));
-    EXPECT_EQ(error, path("rewritten") + ": of format " + (version ? "5" : "1") +
-                         ", which was of no release and is not read any more (format 6 is the "
+    EXPECT_EQ(error, path("rewritten") + ": of format " + (version ? "6" : "1") +
+                         ", which was of no release and is not read any more (format 7 is the "
                          "first one); train it again (rosrun self_awareness train)");
   }
 }

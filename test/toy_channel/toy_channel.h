@@ -18,7 +18,6 @@ class Bursts : public Channel {
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
                                             std::vector<std::size_t> tracks) const override;
-  Margins margins(const Tuning& tuning) const override { return {tuning.least_margin, 2}; }
 };
 
 }  // namespace self_awareness::core::evidence

@@ -1,7 +1,7 @@
 """Holes: silences that one recording shows and no other one.
 
 A death is found once a silence is longer than what most starts agree on (docs/method.md, section
-5.3). Where they are too few to agree, or a component pauses, one that hung for some seconds in one
+5.2). Where they are too few to agree, or a component pauses, one that hung for some seconds in one
 of the recordings of normal operation is missed for longer than that ever after. Who trains is told
 by name, and may leave it out.
 """

@@ -51,7 +51,7 @@ class EvidenceJudgeTest : public testing::Test {
 
 TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
   const std::int64_t age = 700 * kMillisecond;
-  const double evidence = model_->overdue(kA, age);
+  const double evidence = toSeconds(age);
   for (const double share : {0.5, 0.99, 1.01}) {
     limit(kOverdue, kA) = evidence / share;
     const std::unique_ptr<core::Judge> judge = newJudge(limits_);
@@ -85,7 +85,7 @@ TEST_F(EvidenceJudgeTest, SaysWhatIsNotWatchedNow) {
 }
 
 TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   EXPECT_FALSE(judgeAt(*judge, kSecond).abnormal);
@@ -96,7 +96,7 @@ TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
 }
 
 TEST_F(EvidenceJudgeTest, OfAStarvedMachineNobodyIsNamed) {
-  limit(kOverdue, kA) = model_->overdue(kA, 1200 * kMillisecond);
+  limit(kOverdue, kA) = 1.2;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({-100 * kSecond, kA});
   judge->add({-100 * kSecond, kB});
@@ -125,7 +125,7 @@ TEST_F(EvidenceJudgeTest, OfAStarvedMachineNobodyIsNamed) {
 }
 
 TEST_F(EvidenceJudgeTest, AMachineThatStaysStarvedIsAnAlarm) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({-100 * kSecond, kB});
   judge->hear({-100 * kSecond, 0, 0});
@@ -143,8 +143,8 @@ TEST_F(EvidenceJudgeTest, AMachineThatStaysStarvedIsAnAlarm) {
 }
 
 TEST_F(EvidenceJudgeTest, AllAreSilentIfEverybodyShouldHaveSpoken) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
-  limit(kOverdue, kB) = model_->overdue(kB, 11 * kSecond);
+  limit(kOverdue, kA) = 1;
+  limit(kOverdue, kB) = 11;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   const std::int64_t end = kSecond + 50 * kMillisecond;
@@ -167,7 +167,7 @@ TEST_F(EvidenceJudgeTest, WhoSaysAnotherThingIsNotSilent) {
   model_ = std::make_shared<Model>(watch(start(0), start(kStart)));
   limits_ = allLimits(*model_, kNone);
   for (EventId id = 0; id < 3; ++id) {
-    limit(kOverdue, id) = model_->overdue(id, 2 * kSecond);
+    limit(kOverdue, id) = 2;
   }
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   for (const Event& event : std::vector<Event>{{0, 2}, {kSecond, 0}, {2500 * kMillisecond, 1}}) {
@@ -196,7 +196,7 @@ TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
 }
 
 TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   const Window unknown{0, {{{0, kC}, true, {}}}};
@@ -208,7 +208,7 @@ TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
 }
 
 TEST_F(EvidenceJudgeTest, WhoIsWithinHisOwnRangeIsNoSuspectBesideAnUnknownEvent) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   const Window unknown{900 * kMillisecond, {{{950 * kMillisecond, kC}, true, {}}}};
@@ -230,8 +230,8 @@ TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothing) {
 }
 
 TEST_F(EvidenceJudgeTest, WhatIsAcceptedIsNoEvidenceAndAllElseIs) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
-  limit(kOverdue, kB) = model_->overdue(kB, kSecond);
+  limit(kOverdue, kA) = 1;
+  limit(kOverdue, kB) = 1;
   limit(kSlower, kB) = 2;
   const auto judgedWith = [&](const Acceptances& all) {
     const std::unique_ptr<core::Judge> judge = newJudge(limits_);
@@ -261,7 +261,7 @@ TEST_F(EvidenceJudgeTest, WhatIsAcceptedIsNoEvidenceAndAllElseIs) {
 }
 
 TEST_F(EvidenceJudgeTest, WhoIsOptionalMayBeAbsentAndIsJudgedWhileThere) {
-  limit(kOverdue, kB) = model_->overdue(kB, kSecond);
+  limit(kOverdue, kB) = 1;
   limit(kSlower, kB) = 4;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   Acceptances optional;
@@ -291,7 +291,7 @@ TEST_F(EvidenceJudgeTest, WhoIsOptionalMayBeAbsentAndIsJudgedWhileThere) {
 }
 
 TEST_F(EvidenceJudgeTest, WhatSettlesIsNotJudgedAndAllElseIs) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   limit(kPairs, kB, kA) = 1;
   const std::int64_t now = 45 * kPeriod;
   const auto evidenceAt = [&](std::int64_t start, EventId is_new, std::int64_t until) {
@@ -325,7 +325,7 @@ TEST_F(EvidenceJudgeTest, WhatWasUnusualOfAStartDoesNotCountAfterwards) {
 }
 
 TEST_F(EvidenceJudgeTest, WhatWasMissedIsNotJudgedAndAllElseIs) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   limit(kPairs, kB, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   feed(*judge, 5);
@@ -343,7 +343,7 @@ TEST_F(EvidenceJudgeTest, WhatWasMissedIsNotJudgedAndAllElseIs) {
 }
 
 TEST_F(EvidenceJudgeTest, WhoWasSilentBeforeThisProgramStoodStillIsSilentStill) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   limit(kPairs, kB, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   feed(*judge, 5);
@@ -381,7 +381,7 @@ TEST_F(EvidenceJudgeTest, AfterARestartAllBeginsAnew) {
 }
 
 TEST_F(EvidenceJudgeTest, WhoDoesNotSubscribeIsASuspicionAndHidesNobody) {
-  limit(kOverdue, kA) = model_->overdue(kA, 100 * kSecond);
+  limit(kOverdue, kA) = 100;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   judge->add({0, kB});
@@ -423,7 +423,7 @@ class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
   // A is silent, and is suspected; before, an unknown sender was heard.
   std::vector<Suspect> suspectsAfter(const EventType& unknown, std::int64_t ago) {
     const EventId id = heard_->intern(unknown);
-    limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+    limit(kOverdue, kA) = 1;
     const std::unique_ptr<core::Judge> judge = newJudge(limits_);
     const std::int64_t end = 5 * kSecond;
     judge->add({kSecond, kA});
@@ -467,7 +467,7 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStranger) {
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, WhoWasThereLongBeforeIsNotNamedUnlessItComesBack) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   const std::vector<EventId> strangers{heard_->intern({"/rostopic", "/y", "T"}),
                                        heard_->intern({"/extra", "/own", "T"})};
   const auto named = [&](bool with_pause) {
@@ -501,7 +501,7 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhoWasThereLongBeforeIsNotNamedUnlessItCome
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({kSecond, kA});
   judge->add({kSecond, kB});
@@ -525,7 +525,7 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhatTrainingKnowsByNameIsNotUnknown) {
   const EventId level = heard_->intern({"/a", "/x", "T[level=8]"});
   graph_->addUnheard({"/planner", "/debug"});
   graph_->addUnheard({"/a", "/x"});  // in one start; in another one it was heard
-  limit(kOverdue, kA) = model_->overdue(kA, kSecond);
+  limit(kOverdue, kA) = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   EXPECT_FALSE(judge->add({1, debug})->unknown);

@@ -21,7 +21,7 @@ struct Moment {
         may_be_silent(model->size(), false) {
     for (std::size_t track = 0; track < model->tracks().size(); ++track) {
       if (model->finding(track) == Finding::kSilent) {
-        limits_of_silence[model->tracks()[track].to] = 1;
+        limits_of_silence[model->tracks()[track].to] = 0.5;
       }
     }
   }

@@ -11,12 +11,9 @@ from typing import Any, Callable, Dict, List, Tuple
 import pytest
 from conftest import jittery_robot, trained
 
-from self_awareness import EvidenceModel, TrainedModel, recordings
-from self_awareness.calibration import limits
+from self_awareness import EvidenceModel, TrainedModel
 from self_awareness.commands import calibrate
-from self_awareness.parts import BagPart
 from self_awareness.reporting import evidence_report
-from self_awareness.stamps import SECOND_NS
 
 Bags = Tuple[str, str]
 
@@ -58,11 +55,7 @@ def test_the_limits_are_stored_with_how_they_were_found(run, base: str, tmp_path
     assert TrainedModel.load(base).calibration.method == 'cross-fit'  # left alone
 
 
-def test_what_another_budget_buys_is_told(base: str, long_bags: Bags, run) -> None:
-    model = TrainedModel.load(base)
-    normal = [recordings.read(model, BagPart(long_bags[1]))]
-    strict, lax = limits.held_out(model, normal, 5 * SECOND_NS, [0.05, 5.0])
-    assert any(one > other for one, other in zip(strict.limits, lax.limits))
+def test_what_another_budget_buys_is_told(run) -> None:
     assert ('--budget: with 0.05, 0.5, 5 false alarms an hour, all deaths are found equally soon'
             in run('--details')[1])
 

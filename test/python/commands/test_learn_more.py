@@ -29,7 +29,7 @@ def _robot(start: float, seed: int, period: float = 0.05, length: float = 130.0,
         messages.append((stamp + 0.03 + rng.expovariate(500.0), '/slam', '/map'))
     phase = rng.uniform(0.0, 0.37)
     messages += [(start + phase + 0.37 * i + rng.expovariate(500.0), '/battery', '/charge')
-                 for i in range(int(length / 0.37))]
+                 for i in range(int(length / 0.37) + 1)]
     return sorted(each for each in messages if each[0] < start + length
                   and (each[1] != dead or each[0] < start + dead_from))
 

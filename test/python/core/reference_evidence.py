@@ -6,8 +6,8 @@ event type is a letter, a mode of the robot a small one, a track a triple (chann
 from __future__ import annotations
 
 import math
-from collections import Counter, defaultdict
-from functools import lru_cache
+from collections import defaultdict
+from functools import cached_property, lru_cache
 from typing import Dict, Iterable, List, Optional, Sequence, Tuple
 
 Event = Tuple[int, str]
@@ -77,13 +77,6 @@ def lower_edge(index: int) -> float:
     if index == BINS:
         return math.inf
     return float(EDGES[index - 1]) if index > 0 else 0.0
-
-
-def middle(index: int) -> float:
-    """Return what stands for the delays in a bin."""
-    if index == 0:
-        return EDGES[0] / 2
-    return math.sqrt(EDGES[index - 1] * EDGES[index]) if index < BINS - 1 else EDGES[-1]
 
 
 def numbers_below(bins: Sequence[int]) -> List[int]:
@@ -254,7 +247,6 @@ class ReferenceModel:
         self._halves = (first, second)
         self._least_effect = least_effect
         self.longest = {kind: max(both.gaps[kind], default=0) for kind in self.types}
-        self._gaps = {kind: Counter(self._binned(both.gaps[kind])) for kind in self.types}
         self._surprises = {track: self._standardised(track[2], track[1])
                            for track in tracks if track[0] == 'pairs'}
         self._steps = {track: self._steps_of(track) for track in tracks
@@ -292,21 +284,6 @@ class ReferenceModel:
         effect = max(in_ns, of_period * self.both.mean_gap(e_i))
         first, last = usual_bins(bins)
         return lower_edge(first) - effect, lower_edge(last + 1) + effect
-
-    @staticmethod
-    def _binned(gaps: Sequence[int]) -> List[float]:
-        longest = max(gaps, default=0)
-        return [min(middle(log_bin(gap)), longest) for gap in gaps]
-
-    def overdue(self, kind: str, age: float) -> float:
-        """Return -log of the probability of such an age at a random moment."""
-        gaps = self._gaps[kind]
-        if not gaps:
-            return 0.0
-        longest = max(self.both.gaps[kind])
-        left = math.fsum(number * (gap - age) for gap, number in gaps.items() if gap > age)
-        return -math.log((left + longest * math.exp(-age / longest))
-                         / (math.fsum(gaps.elements()) + longest))
 
     def _steps_of(self, track: Track) -> List[float]:
         """Return what a gap of every bin adds to the sum of another pace [nat]."""
@@ -351,11 +328,28 @@ class ReferenceModel:
     def counts_requests(self, track: Track) -> bool:
         """Return whether a deadline counts requests, not seconds."""
         _, to, other = track
+        return (self._fail or self._are_series(other)
+                or self.both.miss_rate(other, to) > self._too_soon(to, other) + RARE_MISSES)
+
+    @cached_property
+    def _fail(self) -> bool:
+        """Return whether answers that are not asked for in series fail now and then."""
+        missing, asked = 0.5, 1.0
+        for channel, to, other in self.tracks:
+            if channel == 'deadlines' and not self._are_series(other):
+                requests = len(self.both.gaps[other])
+                answers = self.both.answers[other, to]
+                missing += max(requests * (1 - self._too_soon(to, other)) - answers, 0)
+                asked += requests
+        return missing / asked > RARE_MISSES
+
+    def _are_series(self, other: str) -> bool:
+        return self.both.mean_gap(other) < LONGEST_GAP_OF_SERIES
+
+    def _too_soon(self, to: str, other: str) -> float:
         gaps = [log_bin(gap) for gap in self.both.gaps[other]]
         _, latest = usual_bins(self.both.delays[other, to])
-        too_soon = sum(gap <= latest for gap in gaps) / max(len(gaps), 1)
-        return (self.both.mean_gap(other) < LONGEST_GAP_OF_SERIES
-                or self.both.miss_rate(other, to) > too_soon + RARE_MISSES)
+        return sum(gap <= latest for gap in gaps) / max(len(gaps), 1)
 
     def least_limit(self, track: Track) -> float:
         """Return the least limit that the track may have."""

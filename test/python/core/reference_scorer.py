@@ -248,7 +248,7 @@ class ReferenceScorer:
             return 0.0
         if channel == 'overdue':
             stood_still = self._stood_still(last[0], stall, stalled)
-            return self._model.overdue(kind, max(end - last[0] - stood_still, 0))
+            return max(end - last[0] - stood_still, 0) / SECOND
         watch = self._watches[track]
         if LABELS[channel] == 'pace':
             is_other = self._model.is_other_rate(track, watch.gaps, watch.lasted)

@@ -25,7 +25,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   model.graph.addUnheard({"/planner", "/debug"});
   model.graph.addLasting({"/b", "/x"}, 3);
   model.tuning.least_effect = 0.003;
-  model.tuning.share_of_attribute = 0.03;  // the first and the last one are no exceptions
+  model.tuning.changing_time = 3;  // the first and the last one are no exceptions
   model.tuning.fewest_gaps = 31;
   model.tuning.without = {"slower", "pairs"};
   ASSERT_GE(model.calibration->limits.tracks.size(), 3U);

@@ -67,24 +67,13 @@ struct Tuning {
   // From what recordings show to limits.
   double shortest_part = 30;
   double least_time = 50;
-  double least_excess = 1.1;
-  double prior_exceedances = 5;
-  double scale = 0.2;
-  double scale_of_timers = 0.05;
-  double share_of_least = 0.5;
-  double least_margin = 1.25;
-  double least_deadline_margin = 2;
-  double most_margin = 4;
-  double most_gap_margin = 1.6;
-  double most_own_margin = 2;
-  double most_tail_margin = 8;
-  double most_tail_margin_of_start = 2;
+  double margin = 2;
+  double margin_of_waiting = 4;
+  double margin_of_silence = 1.25;
   double regular = 1.5;
   double fast = 2;
   double pauses = 10;
-  double prior_pauses = 2;
-  double pauses_in_recording = 25;
-  double most_of_training = 10;
+  double prior_pauses = 1.5;
   double least_deadline = 0.5;
   double least_requests = 3;
   double owed_of_silence = 0.9;
@@ -99,10 +88,9 @@ struct Tuning {
   double least_age = 0.5;
   double usual_losses = 0.003;
   double least_losses = 1.5;
-  double least_size = 0.5;
+  double least_size = 1;
   double least_repeat = 2;
   double changing_time = 7200;
-  double share_of_attribute = 0.02;
 
   /// Channels that are switched off, by their names (channelNames()).
   std::set<std::string> without;

@@ -60,7 +60,9 @@ constexpr double kNanosecondsPerHour = 3600e9;
 inline double toSeconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
 }
-/// Seconds to whole nanoseconds: of a number of the method.
+/// Nobody waits for longer [ns]: 36 years.
+constexpr std::int64_t kLongestAge = std::int64_t{1} << 60;
+/// Seconds to whole nanoseconds: of a number of the method, or of a limit of silence.
 inline std::int64_t toNanoseconds(double seconds) {
   return static_cast<std::int64_t>(std::llround(seconds * 1e9));
 }

@@ -106,20 +106,14 @@ class Expectation {
   /// not known, or there is no other one.
   virtual double timeUntil(std::size_t /*track*/, double /*evidence*/) const { return 0; }
   /// The limit of a track, in units of its evidence; NaN: of no use (docs/method.md, section 5.4).
-  /// @param largest that was seen: evidence, or, of silences, their length [ns]
-  /// @param most that is normal, in the same unit
+  /// @param largest evidence that was seen
+  /// @param most that is normal
   virtual double limit(std::size_t /*track*/, double /*largest*/, double most) const {
     return most;
   }
 
  private:
   std::vector<std::size_t> tracks_;
-};
-
-/// By how much limits lie above all that was seen (docs/method.md, section 5.2).
-struct Margins {
-  double least = 0;
-  double most = 0;
 };
 
 /// A kind of evidence (docs/method.md, section 3): all that the method knows of it. The list of
@@ -130,7 +124,7 @@ class Channel {
 
   /// In model files, and in Tuning::without.
   virtual std::string name() const = 0;
-  /// As people read it; channels of one label share what recordings show of their limits.
+  /// As people read it.
   virtual std::string label() const { return name(); }
   virtual Finding finding() const = 0;
   /// What its tracks say is wrong, in general; explain() knows it exactly. Who accepts it accepts
@@ -138,9 +132,9 @@ class Channel {
   virtual Kind kind() const = 0;
   /// Whether it looks at attributes of messages (docs/method.md, section 3.10).
   virtual bool isOfAttributes() const { return false; }
-  /// Whether it has a small share of the false alarms by itself, so that the limits of others do
-  /// not depend on it (docs/method.md, section 5.2).
-  virtual bool hasShareOfItsOwn() const { return isOfAttributes(); }
+  /// Whether a busy machine, or a slower clock, makes its tracks unusual: it looks at when
+  /// messages come, and not at what they are, or who pauses.
+  virtual bool mayBeLate() const { return !isOfAttributes(); }
   /// What it watches, given the counts of the training and the graph.
   virtual std::vector<Track> watch(const Choice& choice) const = 0;
   /// What it judges, in a word, where nothing else of an event type does; empty: another channel
@@ -165,9 +159,6 @@ class Channel {
   }
   /// Whether a recording can show that its delays mislead.
   virtual bool mayMislead() const { return false; }
-  virtual Margins margins(const Tuning& tuning) const {
-    return {tuning.least_margin, tuning.most_margin};
-  }
 };
 
 }  // namespace self_awareness::core::evidence

@@ -13,13 +13,10 @@ class Company : public Channel {
   std::string name() const override { return "company"; }
   Finding finding() const override { return Finding::kAbsent; }
   Kind kind() const override { return Kind::kSilent; }
-  bool hasShareOfItsOwn() const override { return true; }
+  bool mayBeLate() const override { return false; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,
                                             std::vector<std::size_t> tracks) const override;
-  Margins margins(const Tuning& tuning) const override {
-    return {tuning.least_deadline_margin, tuning.most_margin};
-  }
 };
 
 }  // namespace self_awareness::core::evidence

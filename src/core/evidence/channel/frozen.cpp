@@ -113,7 +113,7 @@ std::unique_ptr<const Expectation> Frozen::expect(const Model& model, const Halv
         usual.mean_gap = static_cast<std::int64_t>(model.meanGap(id));
         usual.least_limit =
             std::max({tuning.least_repeat, gapsBeyondChance(counts) * 1e-9 * model.meanGap(id),
-                      tuning.least_margin * usual.longest});
+                      tuning.margin_of_silence * usual.longest});
         return usual;
       });
 }

@@ -69,19 +69,6 @@ void Model::letChannelsExpect(const Halves& halves) {
   }
 }
 
-std::int64_t Model::ageBeyond(EventId id, double limit) const {
-  std::int64_t above = 1;
-  while (above < kLongestAge && overdue(id, above) <= limit) {
-    above *= 2;
-  }
-  std::int64_t below = 0;
-  while (above - below > 1) {
-    const std::int64_t middle = below + (above - below) / 2;
-    (overdue(id, middle) <= limit ? below : above) = middle;
-  }
-  return above;
-}
-
 double Model::logSurvival(EventId id, std::int64_t age) const {
   return static_cast<double>(learned().type(id).gaps) < tuning_.fewest_gaps
              ? 0

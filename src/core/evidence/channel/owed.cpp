@@ -15,7 +15,20 @@ constexpr double kUsualAnswers = 0.9;
 class ExpectedAnswers : public Expectation {
  public:
   ExpectedAnswers(const Model& model, std::vector<std::size_t> tracks)
-      : Expectation(std::move(tracks)), model_(model) {}
+      : Expectation(std::move(tracks)), model_(model) {
+    double missing = 0.5;  // as in missRate()
+    double asked = 1;
+    for (const std::size_t track : this->tracks()) {
+      if (!areSeries(track)) {
+        const Track& owed = model_.tracks()[track];
+        const auto requests = static_cast<double>(model_.statistics().type(owed.from).gaps);
+        const auto answers = static_cast<double>(model_.statistics().answers(owed.from, owed.to));
+        missing += std::max(requests * (1 - tooSoon(owed)) - answers, 0.0);
+        asked += requests;
+      }
+    }
+    fail_ = missing / asked > model_.tuning().rare_misses;
+  }
 
   std::unique_ptr<ChannelState> start() const override;
   double leastLimit(std::size_t track) const override {
@@ -35,13 +48,16 @@ class ExpectedAnswers : public Expectation {
   bool countsRequests(std::size_t track) const {
     const Track& owed = model_.tracks()[track];
     const Statistics& counts = model_.statistics();
-    return model_.meanGap(owed.from) < static_cast<double>(kRateSpan) ||
+    return fail_ || areSeries(track) ||
            missRate(counts.type(owed.from).gaps, counts.answers(owed.from, owed.to)) >
                tooSoon(owed) + model_.tuning().rare_misses;
   }
   const Model& model() const { return model_; }
 
  private:
+  bool areSeries(std::size_t track) const {
+    return model_.meanGap(model_.tracks()[track].from) < static_cast<double>(kRateSpan);
+  }
   /// Share of the requests that the next one follows before an answer may be expected.
   double tooSoon(const Track& owed) const {
     const DelayHistogram& gaps = model_.statistics().delays(owed.from, owed.from);
@@ -55,6 +71,7 @@ class ExpectedAnswers : public Expectation {
   }
 
   const Model& model_;
+  bool fail_ = false;  // those of this robot that are not asked for in series, now and then
 };
 
 class OwedState : public ChannelState {

@@ -6,7 +6,7 @@ namespace self_awareness::core::evidence {
 
 /// Owed answers (docs/method.md, section 3.4): the `to` that `from` asks for does not come in
 /// time. Evidence is the time since the first request without an answer [s], or, where requests
-/// come in series, their number.
+/// come in series, or answers fail now and then, their number.
 class Owed : public Channel {
  public:
   std::string name() const override { return "deadlines"; }
@@ -18,9 +18,6 @@ class Owed : public Channel {
   Relation reason(const Track& track, const Relations& relations,
                   const std::vector<Span>& /*as_usual*/) const override {
     return relations.owed(track.from, track.to);
-  }
-  Margins margins(const Tuning& tuning) const override {
-    return {tuning.least_deadline_margin, tuning.most_margin};
   }
 };
 

@@ -28,9 +28,6 @@ class Pace : public Channel {
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
                                             std::vector<std::size_t> tracks) const override;
-  Margins margins(const Tuning& tuning) const override {
-    return {tuning.least_deadline_margin, tuning.least_deadline_margin};
-  }
 
  private:
   Side side_;

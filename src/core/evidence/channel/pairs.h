@@ -19,9 +19,6 @@ class Pairs : public Channel {
     return relations.delays(track.from, track.to, as_usual);
   }
   bool mayMislead() const override { return true; }
-  Margins margins(const Tuning& tuning) const override {
-    return {tuning.least_margin, tuning.least_deadline_margin};
-  }
 };
 
 }  // namespace self_awareness::core::evidence

@@ -1,14 +1,12 @@
 #include "core/evidence/channel/silence.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <vector>
 
 #include "self_awareness/core/evidence/channel/model.h"
-#include "self_awareness/core/evidence/count/gap_distribution.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -21,12 +19,11 @@ class SilenceState : public ChannelState {
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
     for (const std::size_t track : tracks_) {
       const EventId id = model_.tracks()[track].to;
-      evidence[track] = heard.hasSeen(id) ? model_.overdue(id, heard.age(id)) : 0;
+      evidence[track] = heard.hasSeen(id) ? toSeconds(heard.age(id)) : 0;
     }
   }
   bool isCertain(std::size_t track, double limit, const Heard& heard) const override {
-    const EventId id = model_.tracks()[track].to;
-    return model_.overdue(id, heard.age(id) - heard.window()) > limit;
+    return toSeconds(heard.age(model_.tracks()[track].to) - heard.window()) > limit;
   }
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
@@ -69,12 +66,10 @@ class ExpectedSilence : public Expectation {
     return std::make_unique<SilenceState>(model_, tracks());
   }
   double leastLimit(std::size_t /*track*/) const override { return 0; }
-  double limit(std::size_t track, double /*largest*/, double most) const override {
-    const EventId id = model_.tracks()[track].to;
+  double limit(std::size_t /*track*/, double /*largest*/, double most) const override {
     // Nothing is known of what came at one moment only.
-    const double limit =
-        model_.overdue(id, std::llround(std::min(most, static_cast<double>(kLongestAge))));
-    return limit > 0 ? limit : std::numeric_limits<double>::quiet_NaN();
+    return most > 0 ? std::min(most, toSeconds(kLongestAge))
+                    : std::numeric_limits<double>::quiet_NaN();
   }
 
  private:

@@ -6,9 +6,8 @@
 
 namespace self_awareness::core::evidence {
 
-/// Overdue (docs/method.md, section 3.2): an event type that should have come by now. Evidence
-/// [nat] is -log of the probability, at a random moment of normal operation, that the last one is
-/// so long ago.
+/// Overdue (docs/method.md, section 3.2): an event type that should have come by now. Evidence is
+/// the time since the last one [s].
 class Silence : public Channel {
  public:
   std::string name() const override { return "overdue"; }
@@ -17,9 +16,6 @@ class Silence : public Channel {
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,
                                             std::vector<std::size_t> tracks) const override;
-  Margins margins(const Tuning& tuning) const override {
-    return {tuning.least_margin, tuning.most_gap_margin};
-  }
 };
 
 }  // namespace self_awareness::core::evidence

@@ -12,13 +12,10 @@ class Values : public Channel {
   std::string name() const override { return "values"; }
   Finding finding() const override { return Finding::kUnusual; }
   Kind kind() const override { return Kind::kFast; }
-  bool hasShareOfItsOwn() const override { return true; }
+  bool mayBeLate() const override { return false; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
                                             std::vector<std::size_t> tracks) const override;
-  Margins margins(const Tuning& tuning) const override {
-    return {tuning.least_deadline_margin, tuning.least_deadline_margin};
-  }
 };
 
 }  // namespace self_awareness::core::evidence

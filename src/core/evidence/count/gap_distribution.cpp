@@ -8,40 +8,10 @@
 namespace self_awareness::core::evidence {
 
 GapDistribution::GapDistribution(const Statistics::Type& type, const DelayHistogram& gaps)
-    : number_(static_cast<double>(type.gaps)), longest_gaps_(type.longest_gaps), gaps_(gaps) {
-  if (type.gaps == 0) {
-    return;
-  }
-  longest_ = static_cast<double>(std::max<std::int64_t>(type.longestGap(), 1));
-  for (std::size_t bin = 0; bin < gaps.size(); ++bin) {
-    if (gaps[bin] > 0) {
-      const double middle = std::min(log_bins::middle(bin), longest_);
-      bins_.push_back({middle, static_cast<double>(gaps[bin]), middle * gaps[bin]});
-    }
-  }
-  for (std::size_t bin = bins_.size(); bin-- > 1;) {
-    bins_[bin - 1].count += bins_[bin].count;
-    bins_[bin - 1].sum += bins_[bin].sum;
-  }
-  if (!bins_.empty()) {
-    log_all_ = std::log(bins_.front().sum + longest_);
-    log_longest_ = std::log(longest_);
-  }
-}
-
-double GapDistribution::overdue(std::int64_t age) const {
-  if (bins_.empty()) {
-    return 0;
-  }
-  const auto a = static_cast<double>(std::max<std::int64_t>(age, 0));
-  const auto longer =
-      std::upper_bound(bins_.begin(), bins_.end(), a,
-                       [](double length, const Bin& bin) { return length < bin.middle; });
-  // If no gap was longer: exp(-a / b) would underflow long before its logarithm.
-  return longer != bins_.end() ? log_all_ - std::log(longer->sum - a * longer->count +
-                                                     longest_ * std::exp(-a / longest_))
-                               : log_all_ - log_longest_ + a / longest_;
-}
+    : longest_(static_cast<double>(std::max<std::int64_t>(type.longestGap(), 1))),
+      number_(static_cast<double>(type.gaps)),
+      longest_gaps_(type.longest_gaps),
+      gaps_(gaps) {}
 
 double GapDistribution::logSurvival(std::int64_t age) const {
   if (longest_gaps_.empty()) {

@@ -14,7 +14,7 @@ constexpr double kNearlyAll = 0.9;
 /// Whether what is unusual is that something came late, or too seldom: who has no time does not
 /// send too often.
 bool isOfLate(const Excess& excess, const Unusual& window) {
-  if (excess.isAbsence() || excess.channel->hasShareOfItsOwn()) {
+  if (excess.isAbsence() || !excess.channel->mayBeLate()) {
     return false;
   }
   Suspect suspect;
@@ -51,7 +51,7 @@ std::optional<std::int64_t> BusyMachine::closeWindow(const Unusual& window, Judg
 
 bool BusyMachine::explains(const Excess& excess, const Unusual& window) const {
   // Who fell silent shortly before died, though it could have waited.
-  return excess.onset >= since_ && !excess.channel->hasShareOfItsOwn() &&
+  return excess.onset >= since_ && excess.channel->mayBeLate() &&
          (!excess.isAbsence() || mayHold(excess.id, window.heard()));
 }
 

@@ -200,7 +200,7 @@ std::vector<std::int64_t> NewMode::missedBy(const Unusual& window) const {
 bool NewMode::wasMissed(EventId id, std::int64_t stamp, const Unusual& window) const {
   const std::int64_t silence = stamp - window.heard().stamps()[id];
   return silence > 0 &&
-         (missed_[id] <= stamp || model_->overdue(id, silence) > window.limits_of_silence[id]);
+         (missed_[id] <= stamp || toSeconds(silence) > window.limits_of_silence[id]);
 }
 
 bool NewMode::areUnrelated(const Ids& ids, const Unusual& window) const {

@@ -58,7 +58,7 @@ std::optional<std::int64_t> SlowerClock::closeWindow(const Unusual& window, Judg
 bool SlowerClock::explains(const Excess& excess, const Unusual& /*window*/) const {
   const bool is_of_them = faster_.count(excess.component) > 0 ||
                           faster_.count(model_->componentIndex(excess.from)) > 0;
-  return is_of_them && !excess.channel->hasShareOfItsOwn() && !excess.isAbsence();
+  return is_of_them && excess.channel->mayBeLate() && !excess.isAbsence();
 }
 
 void SlowerClock::restart() {

@@ -41,7 +41,7 @@ std::vector<Suspect> Explanation::suspects(const Unusual& window) const {
       if (each.main->finding() == Finding::kSilent && each.main->share > 1) {
         const double near = tuning_.near_limit * window.limits_of_silence[suspect.id];
         suspect.missed = window.heard().windowEnd() - window.heard().age(suspect.id) +
-                         model_->ageBeyond(suspect.id, near);  // stalls do not count in its age
+                         toNanoseconds(near);  // stalls do not count in its age
       }
       if (each.alive && suspect.reason.kind == Kind::kSilent) {
         suspect.reason.kind =

@@ -11,7 +11,6 @@
 
 #include "core/evidence/channel/channel.h"
 #include "core/evidence/channel/channels.h"
-#include "self_awareness/core/evidence/count/gap_distribution.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core::evidence {
@@ -51,8 +50,8 @@ std::string rounded(double seconds, const std::string& unit) {
 
 /// When a silence is found, that is beyond its limit [s]: it is looked at when a window ends, and
 /// certain when the next one does.
-double foundBySilence(const Model& model, EventId id, double limit, std::int64_t window) {
-  return toSeconds(model.ageBeyond(id, limit) + 2 * window);
+double foundBySilence(double limit, std::int64_t window) {
+  return limit + toSeconds(2 * window);
 }
 
 void addBlind(const Model& model, const Limits& limits, std::vector<Coverage>& coverages) {
@@ -97,7 +96,7 @@ void addLate(const Model& model, const Limits& limits, std::int64_t window,
     const bool accepted = id < may_be_silent.size() && may_be_silent[id];
     if (model.finding(number) == Finding::kSilent && !std::isnan(limits.tracks[number]) &&
         !accepted) {
-      const Found found{foundBySilence(model, id, limits.tracks[number], window), id};
+      const Found found{foundBySilence(limits.tracks[number], window), id};
       Found& first =
           by_topic.try_emplace({model.componentIndex(id), model.vocabulary().at(id).scope}, found)
               .first->second;
@@ -172,7 +171,7 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
     if (accepted && isAbsence(finding)) {
       of.accepted = of.accepted || judged;
     } else if (finding == Finding::kSilent && judged) {
-      const double found = foundBySilence(model, track.to, limit, window);
+      const double found = foundBySilence(limit, window);
       of.death_found_after = std::min(of.death_found_after.value_or(found), found);
     } else if (isAbsence(finding) && judged) {
       const double found = model.expectation(number).timeUntil(number, limit) * 1e-9 +

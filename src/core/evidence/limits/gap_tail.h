@@ -5,7 +5,7 @@
 
 namespace self_awareness::core::evidence {
 
-/// How often an event type that comes irregularly stays away for how long: the excess of its
+/// How often an event type stays away for how long: the excess of its
 /// longest gaps over the shortest of them is taken for exponential. Few gaps tell its mean badly:
 /// so what the next ones are expected to be is a Lomax distribution (docs/method.md, section 5.3).
 /// Gaps in which nothing was left out say nothing about that.
@@ -15,13 +15,12 @@ class GapTail {
   /// @param hours in which they were the longest, more than 0
   /// @param usual gaps are no longer than this [ns]
   /// @param cut_off what silences beyond usual gaps took that recordings cut off [ns]
-  /// @param most_samples of what the next gaps will be: the gaps of one start are as one
-  /// @param prior so many samples of the same mean are believed to have been seen besides;
-  /// infinity: the excess is exponential
+  /// @param samples of their mean excess, as which they count: gaps of one start are as one. The
+  /// fewer, the longer the next ones may be
   GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual,
-          double cut_off, double most_samples, double prior);
+          double cut_off, double samples);
 
-  /// Age [ns] that gaps reach at a rate.
+  /// Age [ns] that gaps reach at a rate; 0: none is longer than usual.
   /// @param rate of such gaps an hour, more than 0
   double age(double rate) const;
 

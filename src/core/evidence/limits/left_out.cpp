@@ -8,8 +8,7 @@
 
 namespace self_awareness::core::evidence {
 
-LeftOut::LeftOut(const std::vector<Part>& parts, const Tuning& tuning)
-    : parts_(parts), share_of_least_(tuning.share_of_least), exceeded_(parts.size(), false) {
+LeftOut::LeftOut(const std::vector<Part>& parts) : parts_(parts), exceeded_(parts.size(), false) {
   double all = 0;
   std::map<std::size_t, double> of_sample;
   for (const Part& part : parts_) {
@@ -48,7 +47,7 @@ void LeftOut::add(const std::vector<double>& largest, const std::vector<double>&
     const double others = left_out_by_[part] == By::kSample
                               ? by_sample.without(parts_[part].sample)
                               : by_part.without(part);
-    const double limit = std::max(least, margin * std::max(others, share_of_least_ * least));
+    const double limit = std::max(least, margin * others);
     // Where the others know nothing of it, there would be no limit.
     exceeded_[part] = exceeded_[part] || (limit > 0 && largest[part] > limit);
   }

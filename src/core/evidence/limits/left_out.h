@@ -3,10 +3,13 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/evidence/limits/held_out.h"
-#include "self_awareness/core/evidence/tuning.h"
-
 namespace self_awareness::core::evidence {
+
+/// A part of a recording.
+struct Part {
+  std::size_t sample = 0;  ///< number of the start, or of the robot, that it is of (samplesOf())
+  double hours = 0;
+};
 
 /// How often normal operation would have exceeded limits that it was not known to: every sample (a
 /// robot, or a start of one) is judged by the others (docs/method.md, section 5.5). Where one is
@@ -14,7 +17,7 @@ namespace self_awareness::core::evidence {
 class LeftOut {
  public:
   /// @param parts all that was looked at; none may be empty
-  LeftOut(const std::vector<Part>& parts, const Tuning& tuning);
+  explicit LeftOut(const std::vector<Part>& parts);
 
   /// Takes in a track that is judged.
   /// @param largest value in every part, 0 or more
@@ -41,7 +44,6 @@ class LeftOut {
   enum class By { kSample, kPart, kNothing };
 
   std::vector<Part> parts_;
-  double share_of_least_;
   std::vector<By> left_out_by_;  // by part
   std::vector<bool> exceeded_;   // by part
 };

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
+#include <numeric>
 #include <set>
-#include <utility>
 
-#include "core/evidence/channel/channels.h"
+#include "core/evidence/channel/channel.h"
 #include "core/evidence/count/starts.h"
+#include "core/evidence/limits/gap_tail.h"
 #include "core/evidence/limits/heads_and_tails.h"
 
 namespace self_awareness::core::evidence {
@@ -17,20 +18,14 @@ namespace {
 
 // What one of three starts shows alone may be what the robot does at times.
 constexpr std::size_t kFewestThatAgree = 5;
-// A type whose longest gap is below this share of the longest that chance would make is a timer.
-constexpr double kFarFromChance = 1.0 / 3;
 constexpr double kNoLimit = std::numeric_limits<double>::quiet_NaN();
 
 double hoursOf(std::uint64_t windows, std::int64_t window) {
   return static_cast<double>(windows) * static_cast<double>(window) / kNanosecondsPerHour;
 }
 
-double sumOf(const std::vector<Part>& parts) {
-  double hours = 0;
-  for (const Part& part : parts) {
-    hours += part.hours;
-  }
-  return hours;
+double largestIn(const std::vector<double>& values) {
+  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
 /// 0: there are fewer than two.
@@ -40,20 +35,6 @@ double secondLargest(std::vector<double> values) {
   }
   std::nth_element(values.begin(), values.begin() + 1, values.end(), std::greater<>());
   return values[1];
-}
-
-/// False alarms an hour that limits are made for. By the training alone, they promise one in so
-/// many times the time that was seen at best.
-double budgetOf(const LimitFinder::Findings& findings, std::int64_t window, double budget,
-                double most_of_training) {
-  std::uint64_t windows = 0;
-  for (const LimitFinder::Recording& recording : findings) {
-    if (!recording.trained_on) {
-      return budget;
-    }
-    windows += recording.windows;
-  }
-  return std::max(budget, 1 / (most_of_training * hoursOf(windows, window)));
 }
 
 /// Adds what came in a recording that was not trained on.
@@ -69,24 +50,6 @@ void addTo(Robots& robots, const LimitFinder::Recording& recording) {
   }
 }
 
-/// Number of pools that share the budget: silences have three, others one for each label, and
-/// those of attributes have a share of their own.
-double numberOfPools(const Tuning& tuning) {
-  std::set<std::string> labels;
-  double of_silences = 0;
-  for (const Channel* channel : channels()) {
-    if (!tuning.isOn(channel->name()) || channel->hasShareOfItsOwn()) {
-      continue;
-    }
-    if (channel->finding() == Finding::kSilent) {
-      of_silences = 3;
-    } else {
-      labels.insert(channel->label());
-    }
-  }
-  return static_cast<double>(labels.size()) + of_silences;
-}
-
 }  // namespace
 
 LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findings,
@@ -98,22 +61,25 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
       limits_(model.tracks().size(), kNoLimit) {
   robots_.add(model.statistics());
   gatherParts(findings);
-  LeftOut gaps(with_gaps_, tuning_);
-  LeftOut evidence(judged_, tuning_);
-  std::map<Pool, std::vector<Seen>> pools;
-  for (std::size_t track = 0; track < model_.tracks().size(); ++track) {
-    if (relations[track].watched) {
-      auto [pool, seen] = seenBy(track);
-      pools[pool].push_back(std::move(seen));
+  LeftOut gaps(with_gaps_);
+  LeftOut evidence(judged_);
+  std::vector<Gaps> silences;
+  double watched = 0;
+  for (std::size_t track = 0; track < limits_.size(); ++track) {
+    if (!relations[track].watched) {
+      continue;
+    }
+    watched += 1;
+    if (model.finding(track) == Finding::kSilent) {
+      silences.push_back(gapsOf(track));
+    } else {
+      limitEvidence(track, evidence);
     }
   }
-  lost_ = lossesOf(pools);
-  const double all = budgetOf(findings, window, budget, tuning_.most_of_training);
-  for (const auto& [pool, tracks] : pools) {
-    const Track& any = model_.tracks()[tracks.front().track];
-    const double share = any.channel->hasShareOfItsOwn() ? tuning_.share_of_attribute * all
-                                                         : all / numberOfPools(tuning_);
-    search(pool.first, tracks, share, pool.first == Kind::kEvidence ? evidence : gaps);
+  leaveHolesOut(silences);
+  lost_ = lossesOf(silences);
+  for (const Gaps& each : silences) {
+    limitSilence(each, budget / watched, gaps);
   }
   rate_ =
       highestRate(gaps.exceeded() + evidence.exceeded(), std::max(gaps.hours(), evidence.hours()));
@@ -134,11 +100,8 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   for (std::size_t k = 0; k < training.size(); ++k) {
     const auto length = static_cast<double>(training[k].end - training[k].start);
     with_gaps_.push_back({samples[k], length / kNanosecondsPerHour});
-    longest_recording_ = std::max(longest_recording_, length);
   }
   for (std::size_t k = 0; k < findings.size(); ++k) {
-    const double hours = hoursOf(findings[k].windows, window_);
-    longest_recording_ = std::max(longest_recording_, hours * kNanosecondsPerHour);
     for (const LimitFinder::Recording::Part& part : findings[k].parts) {
       const Part its{samples[training.size() + k], hoursOf(part.windows, window_)};
       judged_.push_back(its);
@@ -151,40 +114,27 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   }
 }
 
-std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t track) const {
-  Seen seen{track, model_.leastLimit(track), {}, {}};
-  if (model_.finding(track) == Finding::kSilent) {
-    const EventId id = model_.tracks()[track].to;
-    seen.largest = gapsOf(id);
-    seen.agreed = agreedOn(seen.largest);
-    const Kind kind =
-        isOftenSilent(model_.statistics(), id, tuning_) ? Kind::kOthers : kindOfGaps(seen);
-    if (kind == Kind::kOthers) {
-      seen.agreed = seen.largest;  // a pause may be as long as it likes
-    }
-    return {{kind, ""}, seen};
-  }
-  for (const LimitFinder::Recording::Part* part : judged_parts_) {
-    seen.largest.push_back(part->evidence[track]);
-  }
-  seen.agreed = seen.largest;
-  return {{Kind::kEvidence, channelLabel(model_.tracks()[track])}, seen};
-}
-
-std::vector<double> LimitSearch::gapsOf(EventId id) const {
+LimitSearch::Gaps LimitSearch::gapsOf(std::size_t track) const {
+  const EventId id = model_.tracks()[track].to;
   const HeadsAndTails cut_off(model_.statistics(), id, tuning_);
-  std::vector<double> longest;
+  Gaps gaps;
+  gaps.track = track;
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
     const std::int64_t gap = isHeardIn(recording, id) ? recording.longest_gaps[id] : 0;
-    const bool lacks = robots_.lacks(recording.robot, id);
-    longest.push_back(asTold(std::max(gap, lacks ? 0 : cut_off.longestIn(recording))));
+    const bool without = robots_.lacks(recording.robot, id);
+    gaps.longest.push_back(asTold(std::max(gap, without ? 0 : cut_off.longestIn(recording))));
   }
   for (const GapPart& part : gap_parts_) {
-    const bool never = !part.of->firsts.empty() && part.of->firsts[id] < 0 &&
-                       !robots_.lacks(part.of->robot, id) && cut_off.count();
-    longest.push_back(asTold(never ? part.of->end - part.of->start : part.said->longest_gaps[id]));
+    gaps.longest.push_back(asTold(lacks(*part.of, id, cut_off.count())
+                                      ? part.of->end - part.of->start
+                                      : part.said->longest_gaps[id]));
   }
-  return longest;
+  gaps.agreed = gaps.longest;
+  gaps.largest = largestIn(gaps.agreed);
+  if (!cut_off.count()) {  // else it pauses, for as long as it likes
+    findHole(gaps);
+  }
+  return gaps;
 }
 
 double LimitSearch::asTold(std::int64_t gap) const {
@@ -192,50 +142,66 @@ double LimitSearch::asTold(std::int64_t gap) const {
   return gap > 0 ? static_cast<double>(gap) + window() : 0;
 }
 
-LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
-  const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
-  const double again = secondLargest(seen.agreed);
-  const double gap = again > 0 ? again : *std::max_element(seen.agreed.begin(), seen.agreed.end());
-  if (gap - window() >= tuning_.regular * mean_gap) {
-    return Kind::kOthers;
-  }
-  return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
+bool LimitSearch::lacks(const LimitFinder::Recording& recording, EventId id,
+                        bool often_silent) const {
+  return often_silent && !recording.firsts.empty() && recording.firsts[id] < 0 &&
+         !robots_.lacks(recording.robot, id);
 }
 
-std::vector<double> LimitSearch::agreedOn(const std::vector<double>& longest) const {
-  const auto worst = std::max_element(longest.begin(), longest.end());
-  const std::size_t sample = with_gaps_[static_cast<std::size_t>(worst - longest.begin())].sample;
-  double others = 0;
-  for (std::size_t part = 0; part < longest.size(); ++part) {
-    others = with_gaps_[part].sample == sample ? others : std::max(others, longest[part]);
+void LimitSearch::findHole(Gaps& gaps) const {
+  const auto worst = std::max_element(gaps.longest.begin(), gaps.longest.end());
+  const std::size_t sample =
+      with_gaps_[static_cast<std::size_t>(worst - gaps.longest.begin())].sample;
+  for (std::size_t part = 0; part < gaps.longest.size(); ++part) {
+    if (with_gaps_[part].sample != sample) {
+      gaps.without_hole = std::max(gaps.without_hole, gaps.longest[part]);
+    }
   }
   const auto stall = static_cast<double>(toNanoseconds(tuning_.longest_stall));
-  const double hole = tuning_.most_mean_gaps * others + stall;
-  std::vector<double> agreed = longest;
-  if (samplesThatHeard(longest) >= kFewestThatAgree) {
-    for (double& gap : agreed) {
-      gap = gap > hole ? others : gap;
-    }
+  // Where no other start knows the type, all that it shows may be one.
+  if (gaps.without_hole <= 0 || *worst > tuning_.most_mean_gaps * gaps.without_hole + stall) {
+    gaps.hole_in = sample;
   }
-  return agreed;
 }
 
-double LimitSearch::lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const {
+void LimitSearch::leaveHolesOut(std::vector<Gaps>& all) const {
+  std::map<std::size_t, std::set<std::size_t>> components;  // by start
+  for (const Gaps& gaps : all) {
+    if (gaps.hole_in && gaps.without_hole > 0) {
+      components[*gaps.hole_in].insert(model_.componentIndex(model_.tracks()[gaps.track].to));
+    }
+  }
+  for (Gaps& gaps : all) {
+    if (gaps.hole_in && gaps.without_hole > 0 &&
+        static_cast<double>(components[*gaps.hole_in].size()) >= tuning_.fewest_busy) {
+      gaps.hole_in.reset();
+    }
+    if (gaps.hole_in && samplesThatHeard(gaps) >= kFewestThatAgree) {
+      for (double& gap : gaps.agreed) {
+        gap = std::min(gap, gaps.without_hole);
+      }
+      gaps.largest = gaps.without_hole;
+    }
+  }
+}
+
+double LimitSearch::lossesOf(const std::vector<Gaps>& all) const {
   double lost = 0;
   double came = 0;
-  for (const auto& [pool, tracks] : pools) {
-    if (pool.first != Kind::kTimers) {
+  for (const Gaps& gaps : all) {
+    const EventId id = model_.tracks()[gaps.track].to;
+    const double mean_gap = model_.meanGap(id);
+    const double loss = tuning_.regular * mean_gap + window();
+    const double again = secondLargest(gaps.agreed);
+    if (mean_gap <= 0 || mean_gap < tuning_.fast * window() ||
+        (again > 0 ? again : gaps.largest) >= loss) {
       continue;
     }
-    for (const Seen& seen : tracks) {
-      const EventId id = model_.tracks()[seen.track].to;
-      const double mean_gap = model_.meanGap(id);
-      const double loss = tuning_.regular * mean_gap + window();
-      lost += static_cast<double>(
-          std::count_if(seen.agreed.begin(), seen.agreed.end(),
-                        [=](double gap) { return gap >= loss && gap < loss + mean_gap; }));
-      came += numberOf(id);
-    }
+    lost +=
+        static_cast<double>(std::count_if(gaps.agreed.begin(), gaps.agreed.end(), [=](double gap) {
+          return gap >= loss && gap < loss + mean_gap;
+        }));
+    came += numberOf(id);
   }
   return came > 0 ? lost / came : 0;
 }
@@ -249,50 +215,37 @@ double LimitSearch::numberOf(EventId id) const {
   return static_cast<double>(model_.statistics().type(id).gaps) + heard_for / model_.meanGap(id);
 }
 
-void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double share,
-                         LeftOut& left_out) {
-  const bool timers = kind == Kind::kTimers || kind == Kind::kFastTimers;
-  const bool gaps = kind != Kind::kEvidence;
-  HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? tuning_.scale_of_timers : tuning_.scale,
-                   tuning_);
-  for (const Seen& seen : tracks) {
-    if (!isOfOneRobot(seen.track)) {
-      held_out.add(seen.agreed, seen.least);
-    }
-  }
-  const double told = held_out.margin(share);
-  const double rate = share / static_cast<double>(tracks.size());
-  for (const Seen& seen : tracks) {
-    // A track that would have raised an alarm had its worst start been left out gets a wider
-    // limit.
-    const bool of_one = isOfOneRobot(seen.track);  // what the others say of it is nothing
-    const Margins bounds = model_.tracks()[seen.track].channel->margins(tuning_);
-    const double margin = std::clamp(told, bounds.least, bounds.most);
-    const double own = gaps || of_one
-                           ? margin
-                           : std::max(margin, std::min(held_out.excess(seen.agreed, seen.least),
-                                                       tuning_.most_own_margin));
-    const double largest = *std::max_element(seen.agreed.begin(), seen.agreed.end());
-    const Expectation& expected = model_.expectation(seen.track);
-    const double found =
-        std::max({seen.least, own * std::max(largest, tuning_.share_of_least * seen.least),
-                  kind == Kind::kTimers ? withALoss(seen.track, largest, rate) : 0.0});
-    const double most =
-        gaps ? longestAge(kind, seen, largest - window(), found - window(), rate) : found;
-    double& limit = limits_[seen.track];
-    limit = expected.limit(seen.track, largest, most);
-    if (!std::isnan(limit) && !of_one) {
-      left_out.add(seen.largest, seen.agreed, seen.least,
-                   gaps ? (most + window()) / largest : margin);
-    }
+void LimitSearch::limitSilence(const Gaps& gaps, double rate, LeftOut& left_out) {
+  const double mean_gap = model_.meanGap(model_.tracks()[gaps.track].to);
+  const bool loses = lost_ * kNanosecondsPerHour / mean_gap > rate &&
+                     gaps.largest - window() < tuning_.regular * mean_gap;
+  const double told =
+      std::max({tuning_.margin_of_silence * gaps.largest, loses ? gaps.largest + mean_gap : 0.0,
+                rareAge(gaps, rate) + window()});
+  constexpr double kPerSecond = kNanosecondsPerSecond;
+  if (limit(gaps.track, gaps.largest / kPerSecond, (told - window()) / kPerSecond)) {
+    left_out.add(gaps.longest, gaps.agreed, 0, told / gaps.largest);
   }
 }
 
-double LimitSearch::withALoss(std::size_t track, double largest, double rate) const {
-  const double mean_gap = model_.meanGap(model_.tracks()[track].to);
-  const bool is_rare = lost_ * kNanosecondsPerHour / mean_gap <= rate;
-  const bool has_one = largest - window() >= tuning_.regular * mean_gap;
-  return is_rare || has_one ? largest : largest + mean_gap;
+void LimitSearch::limitEvidence(std::size_t track, LeftOut& left_out) {
+  std::vector<double> seen;
+  for (const LimitFinder::Recording::Part* part : judged_parts_) {
+    seen.push_back(part->evidence[track]);
+  }
+  const Finding finding = model_.finding(track);
+  const bool waits = finding == Finding::kUnanswered || finding == Finding::kAbsent;
+  const double margin = waits ? tuning_.margin_of_waiting : tuning_.margin;
+  const double least = model_.leastLimit(track);
+  const double largest = largestIn(seen);
+  if (limit(track, largest, std::max(least, margin * largest))) {
+    left_out.add(seen, seen, least, margin);
+  }
+}
+
+bool LimitSearch::limit(std::size_t track, double largest, double most) {
+  limits_[track] = model_.expectation(track).limit(track, largest, most);
+  return !std::isnan(limits_[track]) && !isOfOneRobot(track);
 }
 
 bool LimitSearch::isOfOneRobot(std::size_t track) const {
@@ -301,65 +254,62 @@ bool LimitSearch::isOfOneRobot(std::size_t track) const {
          (robots_.numberWith(watched.to) == 1 || robots_.numberWith(watched.from) == 1);
 }
 
-double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, double age,
-                               double rate) const {
-  const auto starts = static_cast<double>(samplesThatHeard(seen.agreed));
-  const Statistics::Type gaps = gapsWithParts(model_.tracks()[seen.track].to, largest);
-  const double rare = tailOf(gaps, seen.track, starts).age(rate);
-  if (kind == Kind::kOthers) {
-    // Pauses of one start may be a host's hiccups.
-    const double most = starts > 1 ? tuning_.most_tail_margin : tuning_.most_tail_margin_of_start;
-    age = std::max(age, std::min(rare, most * largest));
-  }
-  const double told = longest_recording_ / tuning_.pauses_in_recording;
-  const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
-  const double again =
-      std::max(secondLargest(seen.agreed) - window(),
-               gaps.longest_gaps.size() > 1 ? static_cast<double>(gaps.longest_gaps[1]) : 0);
-  if (again > std::max(told, tuning_.most_mean_gaps * mean_gap)) {
-    // What comes when something happens may stay away for as long as nothing does. Recordings
-    // that are hardly longer than a pause do not say how long that is.
-    const double all = sumOf(with_gaps_) * kNanosecondsPerHour;
-    age = std::max({age, rare, std::min(all, tuning_.pauses_in_recording * longest_recording_)});
-  }
-  return age;
-}
-
-std::size_t LimitSearch::samplesThatHeard(const std::vector<double>& longest) const {
+std::size_t LimitSearch::samplesThatHeard(const Gaps& gaps) const {
   std::set<std::size_t> samples;
   for (std::size_t part = 0; part < with_gaps_.size(); ++part) {
-    if (longest[part] > 0) {
+    if (gaps.longest[part] > 0) {
       samples.insert(with_gaps_[part].sample);
     }
   }
   return samples.size();
 }
 
-Statistics::Type LimitSearch::gapsWithParts(EventId id, double longest) const {
-  Statistics::Type gaps = model_.statistics().type(id);
+double LimitSearch::rareAge(const Gaps& gaps, double rate) const {
+  const EventId id = model_.tracks()[gaps.track].to;
+  Statistics::Type type = model_.statistics().type(id);
   for (const GapPart& part : gap_parts_) {
-    gaps.addGap(part.said->longest_gaps[id]);
+    type.addGap(part.said->longest_gaps[id]);
   }
-  const auto agreed =
-      std::find_if(gaps.longest_gaps.begin(), gaps.longest_gaps.end(),
-                   [=](std::int64_t gap) { return static_cast<double>(gap) <= longest; });
-  gaps.longest_gaps.erase(gaps.longest_gaps.begin(), agreed);
-  return gaps;
+  std::vector<std::int64_t>& longest = type.longest_gaps;
+  longest.erase(longest.begin(),
+                std::find_if(longest.begin(), longest.end(), [&](std::int64_t gap) {
+                  return static_cast<double>(gap) <= gaps.largest - window();
+                }));
+  if (longest.empty()) {
+    return 0;
+  }
+  // What is late, or lost, each by itself makes gaps of log(n) mean gaps by chance. Longer ones
+  // are pauses, and few starts tell little of how long these get.
+  const double mean_gap = model_.meanGap(id);
+  const double by_chance = std::log(static_cast<double>(type.gaps)) * mean_gap;
+  const double usual = tuning_.regular * mean_gap;
+  const auto starts = static_cast<double>(samplesThatHeard(gaps));
+  const double samples = (starts + tuning_.prior_pauses) *
+                         std::max(1.0, by_chance / static_cast<double>(longest.front()));
+  longest.resize(std::min(longest.size(), static_cast<std::size_t>(tuning_.pauses)));
+  const double hours =
+      std::accumulate(with_gaps_.begin(), with_gaps_.end(), 0.0,
+                      [](double sum, const Part& part) { return sum + part.hours; });
+  const double age = GapTail(longest, hours, usual, cutOff(id), samples).age(rate);
+  return gaps.hole_in ? std::min(age, tuning_.margin * (gaps.largest - window())) : age;
 }
 
-GapTail LimitSearch::tailOf(Statistics::Type gaps, std::size_t track, double starts) const {
-  const EventId id = model_.tracks()[track].to;
-  gaps.longest_gaps.resize(
-      std::min(gaps.longest_gaps.size(), static_cast<std::size_t>(tuning_.pauses)));
-  const double usual = tuning_.regular * model_.meanGap(id);
-  const double cut_off = HeadsAndTails(model_.statistics(), id, tuning_).all();
-  // Messages of a timer are lost, or late, each by itself. Chance alone makes gaps of log(n) mean
-  // gaps.
-  const double by_chance = std::log(static_cast<double>(gaps.gaps));
-  const bool has_pauses =
-      static_cast<double>(gaps.longestGap()) > kFarFromChance * by_chance * model_.meanGap(id);
-  const double prior = has_pauses ? tuning_.prior_pauses : std::numeric_limits<double>::infinity();
-  return {gaps.longest_gaps, sumOf(with_gaps_), usual, cut_off, starts, prior};
+double LimitSearch::cutOff(EventId id) const {
+  const HeadsAndTails cut_off(model_.statistics(), id, tuning_);
+  double length = cut_off.all();
+  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
+    if (!isHeardIn(recording, id) && !robots_.lacks(recording.robot, id)) {
+      length += static_cast<double>(cut_off.longestIn(recording));
+    }
+  }
+  const LimitFinder::Recording* before = nullptr;
+  for (const GapPart& part : gap_parts_) {
+    if (part.of != before && lacks(*part.of, id, cut_off.count())) {
+      length += static_cast<double>(part.of->end - part.of->start);
+    }
+    before = part.of;
+  }
+  return length;
 }
 
 }  // namespace self_awareness::core::evidence

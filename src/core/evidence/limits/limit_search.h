@@ -1,14 +1,11 @@
 #pragma once
 
 #include <cstddef>
-#include <map>
-#include <string>
-#include <utility>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/evidence/count/robots.h"
-#include "core/evidence/limits/gap_tail.h"
-#include "core/evidence/limits/held_out.h"
 #include "core/evidence/limits/left_out.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/limits/limits.h"
@@ -32,17 +29,15 @@ class LimitSearch {
   double rate() const { return rate_; }
 
  private:
-  /// Tracks whose values exceed those of other recordings in the same way share what they show:
-  /// silences of fast timers, of other timers, and of what comes irregularly; else those of
-  /// channels with one label.
-  enum class Kind { kFastTimers, kTimers, kOthers, kEvidence };
-  using Pool = std::pair<Kind, std::string>;
-  /// A track and its largest values.
-  struct Seen {
+  /// The longest gaps of an event type by part, as long as windows can tell them [ns].
+  struct Gaps {
     std::size_t track = 0;
-    double least = 0;             // limit
-    std::vector<double> largest;  // by part
-    std::vector<double> agreed;   // the same, without what one start alone shows
+    std::vector<double> longest;
+    std::vector<double> agreed;  // the same, without a hole where most starts agree on that
+    double largest = 0;          // of those
+    // What one start shows much longer than all others do: it may have been a fault.
+    std::optional<std::size_t> hole_in;  // this start
+    double without_hole = 0;             // the longest of the others
   };
 
   /// A part of a recording that was not trained on.
@@ -52,44 +47,38 @@ class LimitSearch {
   };
 
   void gatherParts(const LimitFinder::Findings& findings);
-  /// What a track showed, and the pool that it belongs to.
-  std::pair<Pool, Seen> seenBy(std::size_t track) const;
-  /// Longest gaps by part [ns], as long as windows can tell them.
-  std::vector<double> gapsOf(EventId id) const;
+  Gaps gapsOf(std::size_t track) const;
   /// A gap, as long as windows can tell it [ns]; 0: there is none.
   double asTold(std::int64_t gap) const;
-  Kind kindOfGaps(const Seen& seen) const;
-  /// Longest gaps by part, as far as most starts agree on them: where five heard it, what one
-  /// shows much longer than all others do was a fault, and counts as these.
-  std::vector<double> agreedOn(const std::vector<double>& longest) const;
+  /// Whether a recording that was not trained on lacks an event type that is often silent.
+  bool lacks(const LimitFinder::Recording& recording, EventId id, bool often_silent) const;
+  void findHole(Gaps& gaps) const;
+  /// Leaves holes out where five starts heard the type. What several components have in one start
+  /// is none: that is what the robot does.
+  void leaveHolesOut(std::vector<Gaps>& all) const;
   /// Share of the messages of all timers that are not fast, of which one at a time was lost, as
   /// far as recordings show.
-  double lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const;
+  double lossesOf(const std::vector<Gaps>& all) const;
   /// Messages of a timer that came, by the recordings.
   double numberOf(EventId id) const;
-  /// Finds the limits of a pool.
-  /// @param share of the budget
-  /// @param left_out told of each track that is judged
-  void search(Kind kind, const std::vector<Seen>& tracks, double share, LeftOut& left_out);
-  /// Age [ns] up to which a silence is normal.
-  /// @param largest that was seen [ns]
-  /// @param age by that, and its margin [ns]
-  /// @param rate of longer ones an hour, where pauses are long or irregular
-  double longestAge(Kind kind, const Seen& seen, double largest, double age, double rate) const;
-  /// Longest gap of a timer [ns] that is normal, where a message may be lost.
-  /// @param largest that was seen, and a window [ns]
-  /// @param rate of losses an hour that are rare
-  double withALoss(std::size_t track, double largest, double rate) const;
-  /// Number of samples with a gap of an event type whose silence is judged.
-  std::size_t samplesThatHeard(const std::vector<double>& longest) const;
+  /// Finds the limit of a silence.
+  /// @param rate of longer ones an hour that is rare
+  void limitSilence(const Gaps& gaps, double rate, LeftOut& left_out);
+  /// Finds the limit of other evidence.
+  void limitEvidence(std::size_t track, LeftOut& left_out);
+  /// Sets a limit. @return whether other robots tell about the track
+  /// @param largest value that was seen
+  /// @param most that is normal
+  bool limit(std::size_t track, double largest, double most);
+  /// Number of samples with a silence, cut off or not.
+  std::size_t samplesThatHeard(const Gaps& gaps) const;
   /// Whether only one of several robots has what a track watches: no other one tells about it.
   bool isOfOneRobot(std::size_t track) const;
-  /// Gaps of the training, and the longest ones of parts.
-  /// @param longest that most starts agree on [ns]
-  Statistics::Type gapsWithParts(EventId id, double longest) const;
-  /// @param gaps of gapsWithParts()
-  /// @param starts that heard it
-  GapTail tailOf(Statistics::Type gaps, std::size_t track, double starts) const;
+  /// Age [ns] that silences of a track reach at a rate [1/h], by its longest gaps.
+  double rareAge(const Gaps& gaps, double rate) const;
+  /// How long recordings were in which an event type did not come, although it is often silent, or
+  /// had not come yet, or came no more [ns].
+  double cutOff(EventId id) const;
   double window() const { return static_cast<double>(window_); }
 
   const Model& model_;
@@ -102,8 +91,7 @@ class LimitSearch {
   std::vector<const LimitFinder::Recording::Part*> judged_parts_;
   std::vector<Part> with_gaps_;  // the recordings of the training first
   std::vector<GapPart> gap_parts_;
-  double longest_recording_ = 0;  // [ns]
-  double lost_ = 0;               // share of the messages of timers
+  double lost_ = 0;  // share of the messages of timers
   std::vector<double> limits_;
   double rate_ = 0;
 };

@@ -42,7 +42,7 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
   for (std::size_t track = 0; track < limits.tracks.size(); ++track) {
     if (model.finding(track) == Finding::kSilent && !std::isnan(limits.tracks[track])) {
       const EventId id = model.tracks()[track].to;
-      silent[id] = model.ageBeyond(id, limits.tracks[track]);
+      silent[id] = toNanoseconds(std::min(limits.tracks[track], toSeconds(kLongestAge)));
     }
   }
   for (EventId id = 0; id < model.size(); ++id) {

@@ -10,7 +10,7 @@
 namespace self_awareness::core::evidence {
 
 MachineStalls::MachineStalls(const Tuning& tuning)
-    : least_margin_(tuning.least_margin),
+    : margin_(tuning.margin_of_silence),
       shortest_(toNanoseconds(tuning.shortest_stall)),
       between_(toNanoseconds(tuning.between_stalls)) {}
 
@@ -51,7 +51,7 @@ std::vector<MachineStall> MachineStalls::find() const {
     }
     const auto place = lengths.begin() + static_cast<std::ptrdiff_t>(usual);
     std::nth_element(lengths.begin(), place, lengths.end(), std::greater<>());
-    longer_than = toNanoseconds(least_margin_ * toSeconds(*place));
+    longer_than = toNanoseconds(margin_ * toSeconds(*place));
   }
   std::vector<MachineStall> stalls;
   std::size_t run = 0;  // of the last one

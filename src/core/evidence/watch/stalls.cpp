@@ -7,11 +7,12 @@
 namespace self_awareness::core::evidence {
 
 Stalls::Stalls(std::int64_t longest_silence, std::int64_t longest_stall, const Tuning& tuning)
-    : usual_(std::max(toNanoseconds(tuning.least_margin * toSeconds(longest_silence)),
+    : usual_(std::max(toNanoseconds(tuning.margin_of_silence * toSeconds(longest_silence)),
                       toNanoseconds(tuning.shortest_stall))),
-      longest_(std::max(
-          toNanoseconds(tuning.longest_stall),
-          std::min(toNanoseconds(tuning.least_margin * toSeconds(longest_stall)), kRateSpan))),
+      longest_(
+          std::max(toNanoseconds(tuning.longest_stall),
+                   std::min(toNanoseconds(tuning.margin_of_silence * toSeconds(longest_stall)),
+                            kRateSpan))),
       between_(toNanoseconds(tuning.between_stalls)) {}
 
 void Stalls::restart() {

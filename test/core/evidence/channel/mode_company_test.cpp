@@ -205,11 +205,11 @@ TEST_F(ModeLearnedTest, WhileItChargesNothingIsWrong) {
   Events longer = driving(9 * kStart);
   for (Event& event : longer) {
     if (event.stamp >= 9 * kStart + kCycle && event.id != kImu) {
-      event.stamp += 30 * kSecond;
+      event.stamp += 20 * kSecond;
     }
   }
   longer = together(
-      {longer, timer(kImu, 9 * kStart + kEnd, 9 * kStart + kEnd + 30 * kSecond, kPlanning)});
+      {longer, timer(kImu, 9 * kStart + kEnd, 9 * kStart + kEnd + 20 * kSecond, kPlanning)});
   EXPECT_FALSE(alarmIn(judgeOf(model), longer));
 }
 

@@ -23,9 +23,8 @@ TEST(EvidenceModel, RefusesWhatItCannotJudgeBy) {
   EXPECT_THROW(Model{watched}, std::invalid_argument) << "a track of no channel";
 }
 
-TEST(EvidenceModel, ATypeThatNeverRepeatedHasNoEvidence) {
+TEST(EvidenceModel, ATypeThatNeverRepeatedIsNeverRare) {
   const Model model(watch(countsOf({{{0, kA}, {kSecond, kB}, {2 * kSecond, kB}}}), kNothing));
-  EXPECT_EQ(model.overdue(kA, 3600 * kSecond), 0);
   EXPECT_EQ(model.logSurvival(kA, 3600 * kSecond), 0);
   EXPECT_EQ(model.longestGap(kA), 0);
   EXPECT_EQ(model.longestGap(kB), kSecond);
@@ -54,8 +53,9 @@ TEST(EvidenceModel, TheTracksStayWhateverProbabilitiesWereLearnedFrom) {
   const Model half(watched, Model::Learned::kFirst);
   const Model other(watched, Model::Learned::kSecond);
   expectSameTracks(both.tracks(), half.tracks());
-  EXPECT_NE(half.overdue(kA, kSecond), other.overdue(kA, kSecond));
-  EXPECT_DOUBLE_EQ(half.overdue(kA, kSecond), Model(watch(first, {})).overdue(kA, kSecond));
+  EXPECT_NE(half.logSurvival(kA, kSecond), other.logSurvival(kA, kSecond));
+  EXPECT_DOUBLE_EQ(half.logSurvival(kA, kSecond),
+                   Model(watch(first, {})).logSurvival(kA, kSecond));
 }
 
 TEST(EvidenceModel, AHalfMayLackAnEventType) {
@@ -63,8 +63,8 @@ TEST(EvidenceModel, AHalfMayLackAnEventType) {
       countsOf({timer(0, 0, 10 * kSecond, 100 * kMillisecond)}, {kTypes[kB]});
   const Statistics first = countsOf({timer(kA, 0, 10 * kSecond, 100 * kMillisecond)}, 1);
   const Model model(watch(first, second), Model::Learned::kSecond);
-  EXPECT_EQ(model.overdue(kA, kSecond), 0);
-  EXPECT_GT(model.overdue(kB, kSecond), 1);
+  EXPECT_EQ(model.logSurvival(kA, kSecond), 0);
+  EXPECT_LT(model.logSurvival(kB, kSecond), -1);
 }
 
 TEST(EvidenceModel, TheLongestGapsAreTheUsualOnesExactly) {

@@ -98,6 +98,23 @@ TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
   EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
 }
 
+TEST_F(OwedTest, WhereAnswersOfAnotherOneFailAllRequestsAreCounted) {
+  // B answers always, and C four times of five.
+  constexpr std::int64_t kGap = 8 * kSecond;
+  learn([](unsigned seed) {
+    const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
+    Events answered;
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+      if (k % 5 > 0) {
+        answered.push_back(asked[k]);
+      }
+    }
+    return together({asked, answers(kB, asked, kGap / 10), answers(kC, answered, kGap / 8)});
+  });
+  ASSERT_LT(indexOf(model_->tracks(), kDeadlines, kC, kA), model_->tracks().size());
+  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
+}
+
 TEST_F(OwedTest, ARequestThatTheNextOneOvertakesIsNoneWithoutAnAnswer) {
   constexpr std::int64_t kGap = 8 * kSecond;
   learn([](unsigned seed) {

@@ -29,7 +29,7 @@ TEST_F(SilenceTest, TheScorerReturnsTheGapOfTheType) {
 }
 
 TEST_F(SilenceTest, IsCertainOnceItHasLastedAWindowLonger) {
-  const double limit = model_->overdue(kA, kSecond);
+  const double limit = 1;
   add({now_, kA});
   EXPECT_GT(overdueAt(kSecond + kWindow - kMillisecond), limit);
   EXPECT_FALSE(scorer_.isCertain(overdue_, limit));
@@ -39,7 +39,8 @@ TEST_F(SilenceTest, IsCertainOnceItHasLastedAWindowLonger) {
 
 TEST_F(SilenceTest, WhatNeverPausedHasNoLimit) {
   const Expectation& expectation = model_->expectation(overdue_);
-  EXPECT_GT(expectation.limit(overdue_, 0, kSecond), 0);
+  EXPECT_DOUBLE_EQ(expectation.limit(overdue_, 0, 1), 1);
+  EXPECT_DOUBLE_EQ(expectation.limit(overdue_, 0, 1e30), toSeconds(kLongestAge));
   EXPECT_TRUE(std::isnan(expectation.limit(overdue_, 0, 0))) << "all came at one moment";
 }
 

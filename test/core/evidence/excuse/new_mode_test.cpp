@@ -212,7 +212,7 @@ TEST_F(NewModeTest, AnAcceptedOneIsNeitherSuspiciousNorAShareOfALimit) {
   Limits limits = allLimits(*model_, kNone);
   Events events;
   for (EventId id = 0; id < kRobot.size(); ++id) {
-    ofTrack(limits.tracks, *model_, kOverdue, id) = model_->overdue(id, 2 * kSecond);
+    ofTrack(limits.tracks, *model_, kOverdue, id) = 2;
     const std::int64_t end = id < stopping.size() ? 20 * kSecond : 40 * kSecond;
     events = together({events, timer(id, 0, end, 100 * kMillisecond)});
   }

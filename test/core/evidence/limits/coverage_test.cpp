@@ -48,7 +48,7 @@ TEST_F(CoverageTest, NobodyIsWatchedWithoutLimits) {
 }
 
 TEST_F(CoverageTest, ADeathIsFoundTwoWindowsAfterTheSilenceIsBeyondItsLimit) {
-  limit(kOverdue, kA, kA) = model_.overdue(kA, 3 * kSecond);
+  limit(kOverdue, kA, kA) = 3;
   EXPECT_NEAR(of(kA).death_found_after.value_or(0), 3.2, 1e-6);
   EXPECT_TRUE(of(kA).isWatched());
   EXPECT_FALSE(of(kB).isWatched());
@@ -71,8 +71,8 @@ TEST(CoverageOfTopics, ASilenceThatIsFoundFarLaterThanTheDeathIsNamed) {
   const Model model(watchAll(countsOf({start(1)}, types), countsOf({later(start(2))}, types)));
   const auto blindWith = [&](std::int64_t silence) {
     std::vector<double> limits = allTracks(model, kNone);
-    ofTrack(limits, model, kOverdue, kA) = model.overdue(kA, kSecond);
-    ofTrack(limits, model, kOverdue, kB) = model.overdue(kB, silence);
+    ofTrack(limits, model, kOverdue, kA) = 1;
+    ofTrack(limits, model, kOverdue, kB) = toSeconds(silence);
     std::vector<Coverage::Blind> blind =
         coverageOf(model, {limits, {}}, {}, kWindow, false).at(0).blind;
     blind.erase(std::remove_if(blind.begin(), blind.end(),
@@ -102,7 +102,7 @@ TEST(FoundAfter, SaysTheSoonerOneWhileItIsNeeded) {
 }
 
 TEST_F(CoverageTest, WhoMayBeSilentIsNotWatchedSinceThatIsAccepted) {
-  limit(kOverdue, kA, kA) = model_.overdue(kA, 3 * kSecond);
+  limit(kOverdue, kA, kA) = 3;
   const auto with = [&](const std::vector<bool>& may_be_silent) {
     return coverageOf(model_, {limits_, {}}, relations_, kWindow, knows_graph_, may_be_silent)
         .at(model_.componentIndex(kA));
@@ -114,7 +114,7 @@ TEST_F(CoverageTest, WhoMayBeSilentIsNotWatchedSinceThatIsAccepted) {
 }
 
 TEST_F(CoverageTest, ASilenceBeyondAllGapsHasItsTimeToo) {
-  limit(kOverdue, kA, kA) = model_.overdue(kA, 3600 * kSecond);
+  limit(kOverdue, kA, kA) = 3600;
   EXPECT_NEAR(of(kA).death_found_after.value_or(0), 3600.2, 1e-3);
 }
 

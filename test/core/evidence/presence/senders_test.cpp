@@ -38,7 +38,7 @@ class SendersTest : public testing::Test {
  protected:
   SendersTest() {
     for (EventId id = 0; id < kRobot.size(); ++id) {
-      limit(kOverdue, id) = model_->overdue(id, 3 * kSecond);
+      limit(kOverdue, id) = 3;
     }
   }
   double& limit(const std::string& channel, EventId id) {

@@ -73,11 +73,6 @@ class Model {
   /// Its index in components().
   std::size_t componentIndex(EventId id) const { return component_of_.at(id); }
 
-  /// -log of the probability [nat], at a random moment of normal operation, that the last event of
-  /// a type is at least `age` [ns] ago (docs/method.md, section 3.2).
-  double overdue(EventId id, std::int64_t age) const { return gaps_.at(id).overdue(age); }
-  /// The least age [ns] at which that is above a limit [nat].
-  std::int64_t ageBeyond(EventId id, double limit) const;
   /// Natural logarithm of the probability of a gap of at least this age [ns] between two events of
   /// the type (docs/method.md, section 6). 0 if the type is too rare to be judged.
   double logSurvival(EventId id, std::int64_t age) const;

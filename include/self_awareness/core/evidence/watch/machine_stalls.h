@@ -30,7 +30,7 @@ class MachineStalls {
     std::size_t run = 0;  // between two steps of the clock
   };
 
-  double least_margin_;
+  double margin_;
   std::int64_t shortest_;             // [ns]
   std::int64_t between_;              // [ns]
   std::optional<std::int64_t> last_;  // stamp of the event before [ns]; none: a run begins
