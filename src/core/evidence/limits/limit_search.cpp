@@ -119,15 +119,21 @@ LimitSearch::Gaps LimitSearch::gapsOf(std::size_t track) const {
   const HeadsAndTails cut_off(model_.statistics(), id, tuning_);
   Gaps gaps;
   gaps.track = track;
+  gaps.cut_off = cut_off.all();
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    const std::int64_t gap = isHeardIn(recording, id) ? recording.longest_gaps[id] : 0;
-    const bool without = robots_.lacks(recording.robot, id);
-    gaps.longest.push_back(asTold(std::max(gap, without ? 0 : cut_off.longestIn(recording))));
+    const bool heard = isHeardIn(recording, id);
+    const std::int64_t silent =
+        robots_.lacks(recording.robot, id) ? 0 : cut_off.longestIn(recording);
+    gaps.longest.push_back(asTold(std::max(heard ? recording.longest_gaps[id] : 0, silent)));
+    gaps.cut_off += heard ? 0 : static_cast<double>(silent);
   }
+  const LimitFinder::Recording* before = nullptr;
   for (const GapPart& part : gap_parts_) {
-    gaps.longest.push_back(asTold(lacks(*part.of, id, cut_off.count())
-                                      ? part.of->end - part.of->start
-                                      : part.said->longest_gaps[id]));
+    const bool throughout = lacks(*part.of, id, cut_off.count());
+    const std::int64_t length = part.of->end - part.of->start;
+    gaps.longest.push_back(asTold(throughout ? length : part.said->longest_gaps[id]));
+    gaps.cut_off += throughout && part.of != before ? static_cast<double>(length) : 0;
+    before = part.of;
   }
   gaps.agreed = gaps.longest;
   gaps.largest = largestIn(gaps.agreed);
@@ -290,26 +296,8 @@ double LimitSearch::rareAge(const Gaps& gaps, double rate) const {
   const double hours =
       std::accumulate(with_gaps_.begin(), with_gaps_.end(), 0.0,
                       [](double sum, const Part& part) { return sum + part.hours; });
-  const double age = GapTail(longest, hours, usual, cutOff(id), samples).age(rate);
+  const double age = GapTail(longest, hours, usual, gaps.cut_off, samples).age(rate);
   return gaps.hole_in ? std::min(age, tuning_.margin * (gaps.largest - window())) : age;
-}
-
-double LimitSearch::cutOff(EventId id) const {
-  const HeadsAndTails cut_off(model_.statistics(), id, tuning_);
-  double length = cut_off.all();
-  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    if (!isHeardIn(recording, id) && !robots_.lacks(recording.robot, id)) {
-      length += static_cast<double>(cut_off.longestIn(recording));
-    }
-  }
-  const LimitFinder::Recording* before = nullptr;
-  for (const GapPart& part : gap_parts_) {
-    if (part.of != before && lacks(*part.of, id, cut_off.count())) {
-      length += static_cast<double>(part.of->end - part.of->start);
-    }
-    before = part.of;
-  }
-  return length;
 }
 
 }  // namespace self_awareness::core::evidence

@@ -35,6 +35,9 @@ class LimitSearch {
     std::vector<double> longest;
     std::vector<double> agreed;  // the same, without a hole where most starts agree on that
     double largest = 0;          // of those
+    // How long recordings were silent in which an event type that is often silent had not come
+    // yet, or came no more, or not at all.
+    double cut_off = 0;
     // What one start shows much longer than all others do: it may have been a fault.
     std::optional<std::size_t> hole_in;  // this start
     double without_hole = 0;             // the longest of the others
@@ -76,9 +79,6 @@ class LimitSearch {
   bool isOfOneRobot(std::size_t track) const;
   /// Age [ns] that silences of a track reach at a rate [1/h], by its longest gaps.
   double rareAge(const Gaps& gaps, double rate) const;
-  /// How long recordings were in which an event type did not come, although it is often silent, or
-  /// had not come yet, or came no more [ns].
-  double cutOff(EventId id) const;
   double window() const { return static_cast<double>(window_); }
 
   const Model& model_;

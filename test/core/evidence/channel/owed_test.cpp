@@ -7,6 +7,16 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+Events fourOfFive(const Events& asked) {
+  Events some;
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    if (k % 5 > 0) {
+      some.push_back(asked[k]);
+    }
+  }
+  return some;
+}
+
 class OwedTest : public TrackTest {
  protected:
   // Requests of A at random with a mean gap; each is answered by B after a tenth of it.
@@ -87,13 +97,7 @@ TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
   constexpr std::int64_t kGap = 8 * kSecond;
   learn([](unsigned seed) {
     const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
-    Events answered;
-    for (std::size_t k = 0; k < asked.size(); ++k) {
-      if (k % 5 > 0) {
-        answered.push_back(asked[k]);
-      }
-    }
-    return together({asked, answers(kB, answered, kGap / 10)});
+    return together({asked, answers(kB, fourOfFive(asked), kGap / 10)});
   });
   EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
 }
@@ -103,13 +107,8 @@ TEST_F(OwedTest, WhereAnswersOfAnotherOneFailAllRequestsAreCounted) {
   constexpr std::int64_t kGap = 8 * kSecond;
   learn([](unsigned seed) {
     const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
-    Events answered;
-    for (std::size_t k = 0; k < asked.size(); ++k) {
-      if (k % 5 > 0) {
-        answered.push_back(asked[k]);
-      }
-    }
-    return together({asked, answers(kB, asked, kGap / 10), answers(kC, answered, kGap / 8)});
+    return together(
+        {asked, answers(kB, asked, kGap / 10), answers(kC, fourOfFive(asked), kGap / 8)});
   });
   ASSERT_LT(indexOf(model_->tracks(), kDeadlines, kC, kA), model_->tracks().size());
   EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
