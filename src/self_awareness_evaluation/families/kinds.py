@@ -343,6 +343,17 @@ def _add_list(draft: Draft, name: str, topic: str, field: str, usual: str, other
     draft.add(name, topic, f'{field}{usual}]', Timer(1.0), f'{field}{other}]')
 
 
+def _near_timers(draft: Draft) -> None:
+    rng = draft.rng
+    draft.add_timer('driver', 10.0)
+    for number in range(2):  # the longest gap of hours is two periods
+        draft.add(f'imu{number}', 'data', 'sensor_msgs/Imu', Timer(0.05, jitter_s=0.012))
+    for number, (rate, on_s, off_s) in enumerate(((40.0, 10.0, 0.12), (20.0, 6.0, 2.5))):
+        seen = f'seen{number}'  # pauses of up to half a second, and of up to ten
+        draft.activities[seen] = Activity(on_s, off_s * rng.uniform(0.8, 1.2))
+        draft.add_timer(('laser', 'joystick')[number], rate, activity=seen)
+
+
 def _hole(robot: Robot, number: int, seconds: float) -> Fault:
     begin_s = (seconds - _HOLE_S) / 2.0
     return Fault(CRASH, robot.regular[0], begin_s, begin_s + _HOLE_S) if number == 0 else NOTHING
@@ -426,6 +437,8 @@ FAMILIES: Dict[str, Family] = {  # all families by name, each with something of 
                       _servers),
     'lossy': Family('timers; 1 of 5000 messages is lost, however slowly they come',
                     _timers(conditions=Conditions(lost=2e-4, lost_however_slow=2e-4))),
+    'near_timers': Family('a driver; IMUs, a laser, a joystick that pause for up to .1, .5, 10 s',
+                          _near_timers),
     'everyday': Family('timers and chains; transforms, a latched map, log lines, goals, '
                        'diagnostics', _everyday),
     'one_make': Family('timers; robots of one make with a node of their own each: learned from '
