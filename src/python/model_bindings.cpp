@@ -159,7 +159,8 @@ void bindModel(py::module& m) {
           "found_after",
           [](const Coverage& self) { return core::evidence::foundAfter(self, " s"); },
           "both in words, as /diagnostics says them; empty: neither")
-      .def_readonly("late_answers", &Coverage::late_answers, "whether they are found")
+      .def_readonly("late_answers", &Coverage::late_answers,
+                    "how much later than usual they must be to be found [s]")
       .def_readonly("more_starts", &Coverage::more_starts,
                     "of the robot, after which they would be; 0: no number helps")
       .def_property_readonly("late_answers_found", &core::evidence::lateAnswers,

@@ -22,7 +22,7 @@ from self_awareness.training.robot_graph import RobotGraph
 DATA = Path(__file__).resolve().parents[1] / 'data'
 RELEASES = [DATA / '0.1.0']
 RECORDINGS = ('normal_6.events.bag', 'dead.events.bag', 'late.events.bag')
-FORMATS = {'robot.model': 7, 'dead.events.bag': 6, 'results.bag': 2}
+FORMATS = {'robot.model': 8, 'dead.events.bag': 6, 'results.bag': 2}
 """What is written now, by the file of its kind."""
 
 every_release = pytest.mark.parametrize('folder', RELEASES, ids=[path.name for path in RELEASES])

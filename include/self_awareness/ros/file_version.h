@@ -9,7 +9,7 @@ namespace self_awareness::ros1 {
 
 /// Version of the method (docs/method.md): a new one where counts, limits or verdicts are others.
 /// test/python/evaluation/test_method_version.py tells that they are.
-constexpr std::uint32_t kMethod = 12;
+constexpr std::uint32_t kMethod = 13;
 
 /// What this program writes of a kind of file, and so what it reads (docs/monitor.md).
 struct FileKind {
@@ -22,9 +22,9 @@ struct FileKind {
   std::uint32_t first = 1;      ///< the oldest format that is read
   const char* again = "";       ///< how to get a file of this format for an older one
 };
-/// Formats 1 to 6 of models were of no release.
-inline constexpr FileKind kModelFile{"model", 7, 7,
-                                     kMethod, 7, "train it again (rosrun self_awareness train)"};
+/// Formats 1 to 7 of models were of no release.
+inline constexpr FileKind kModelFile{"model", 8, 8,
+                                     kMethod, 8, "train it again (rosrun self_awareness train)"};
 inline constexpr FileKind kEventLogFile{"event log", 6, 5, 0};
 inline constexpr FileKind kResultBag{"result bag", 2, 1, kMethod};
 inline constexpr FileKind kStandingAlarmFile{"standing alarm", 2, 1, 0};

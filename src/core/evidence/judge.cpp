@@ -236,7 +236,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   judgement.threshold = kThreshold;
   if (who_sends_.isAbnormal() ||
       (judgement.busy && ((judgement.busy->late > 0 && isUnusual()) ||
-                          judgement.busy->starved > model_->tuning().longest_starvation))) {
+                          judgement.busy->starved > model_->tuning().accept_after))) {
     // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
     judgement.score = std::min(*judgement.score, kStillBusy);
   }

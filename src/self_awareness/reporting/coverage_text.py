@@ -21,7 +21,7 @@ def summarise(coverage: Sequence[Coverage]) -> List[Dict[str, Any]]:
     return [{'component': each.component, 'period': each.period or None, 'gaps': each.gaps,
              'watched': each.is_watched, 'death_found_after': each.death_found_after,
              'found_when_asked': each.found_when_asked, 'found_after': each.found_after,
-             'late_answers': each.late_answers, 'more_starts': each.more_starts or None,
+             'late_answers_from_s': each.late_answers, 'more_starts': each.more_starts or None,
              'late_answers_found': each.late_answers_found,
              'not_judged': [{'what': what, 'topic': topic, 'why': why}
                             for what, topic, why in each.blind]} for each in coverage]

@@ -152,7 +152,7 @@ inline Statistics startOf(const Events& events, std::int64_t number,
 
 /// What is watched of two halves, though few gaps tell little of a pace.
 inline Watched watchAll(const Statistics& first, const Statistics& second, Tuning tuning = {}) {
-  tuning.least_told = tuning.least_pace;
+  tuning.least_told = tuning.least_sum;
   return watch(first, second, {}, tuning);
 }
 

@@ -24,11 +24,9 @@ LABELS = {'overdue': 'overdue', 'slower': 'pace', 'faster': 'pace', 'pairs': 'pa
 
 RARE_MISSES = 0.02
 
-MOST_SURPRISE = 6.0
-LEAST_DEVIATION = 0.5
 USUAL = 0.9
 LEAST_EFFECT = (5e6, 0.02)  # on delays, by default: [ns], and the share of the period
-LEAST_PACE = 8.0
+LEAST_SUM = 8.0
 OTHER_PACES = {'slower': {2: 1 / 2, 4: 1 / 2},
                'faster': {2: 1 / 3, 4: 1 / 3, **{bins: 1 / 132 for bins in range(5, 49)}}}
 """Their shares, by how many bins gaps are longer or shorter."""
@@ -247,43 +245,31 @@ class ReferenceModel:
         self._halves = (first, second)
         self._least_effect = least_effect
         self.longest = {kind: max(both.gaps[kind], default=0) for kind in self.types}
-        self._surprises = {track: self._standardised(track[2], track[1])
-                           for track in tracks if track[0] == 'pairs'}
-        self._steps = {track: self._steps_of(track) for track in tracks
-                       if LABELS[track[0]] == 'pace'}
+        self._steps = {track: self._steps_of_delays(track[2], track[1])
+                       if track[0] == 'pairs' else self._steps_of(track)
+                       for track in tracks if LABELS[track[0]] in ('pairs', 'pace')}
 
-    def _standardised(self, e_i: str, e_j: str) -> List[float]:
-        first, second = (half.delays[e_i, e_j] for half in self._halves)
-        held_out: List[float] = []
-        if first and second:
-            for learned, measured in ((first, second), (second, first)):
-                logs = log_probabilities(learned)
-                held_out += [-logs[b] for b in measured]
-        mean = math.fsum(held_out) / len(held_out) if held_out else 0.0
-        variance = (math.fsum((s - mean) ** 2 for s in held_out) / len(held_out)
-                    if held_out else 0.0)
-        surprises = [min((-log - mean) / max(math.sqrt(variance), LEAST_DEVIATION), MOST_SURPRISE)
-                     for log in log_probabilities(self.both.delays[e_i, e_j])]
-        period = self.both.mean_gap(e_i)
-        shortest, longest = self._harmless(e_i, e_j)
-        shifts = (0.0, period, -period)
-        harmless = {index for index in range(BINS) for shift in shifts
-                    if lower_edge(index) + shift >= shortest
-                    and lower_edge(index + 1) + shift <= longest}
-        if shortest <= 0.0:  # and so is the bin that a period lies in
-            harmless |= {index for index in range(BINS)
-                         if lower_edge(index) < period <= lower_edge(index + 1)}
-        return [min(surprise, 0.0) if index in harmless else surprise
-                for index, surprise in enumerate(surprises)]
-
-    @lru_cache(maxsize=None)
-    def _harmless(self, e_i: str, e_j: str) -> Tuple[float, float]:
-        """Return the shortest and the longest delay that differ by little from the usual ones."""
+    def _steps_of_delays(self, e_i: str, e_j: str) -> List[float]:
+        """Return what a delay of every bin adds to the sum [nat]."""
         bins = self.both.delays[e_i, e_j]
         in_ns, of_period = self._least_effect
-        effect = max(in_ns, of_period * self.both.mean_gap(e_i))
-        first, last = usual_bins(bins)
-        return lower_edge(first) - effect, lower_edge(last + 1) + effect
+        period = self.both.mean_gap(e_i)
+        effect = max(in_ns, of_period * period)
+        last = max(usual_bins(bins)[1], log_bin(int(period)))
+        steps = []
+        for index in range(BINS):
+            low, high = lower_edge(index), lower_edge(index + 1)
+            count = float(bins.count(index))
+            for other in range(BINS - 1):
+                near = math.fsum(max(min(lower_edge(other + 1) + effect + turn, high)
+                                     - max(lower_edge(other) - effect + turn, low), 0.0)
+                                 for turn in (-period, 0.0, period))
+                if high < math.inf:
+                    count = max(count, min(near / (high - low), 1.0) * bins.count(other))
+            usual = (count + 0.5) / (len(bins) + 0.5 * BINS)
+            another = 1.0 / (last + 1) if index <= last else 0.0
+            steps.append(min(math.log(0.5 + 0.5 * another / usual), LEAST_SUM / 2))
+        return steps
 
     def _steps_of(self, track: Track) -> List[float]:
         """Return what a gap of every bin adds to the sum of another pace [nat]."""
@@ -300,7 +286,7 @@ class ReferenceModel:
                  for here, longer, shorter in zip(found, moved(1, found), moved(-1, found))]
         others = [[share * each for each in moved(by if channel == 'slower' else -by, usual)]
                   for by, share in OTHER_PACES[channel].items()]
-        return [min(math.log(0.5 + 0.5 * math.fsum(shares) / share), LEAST_PACE / 2)
+        return [min(math.log(0.5 + 0.5 * math.fsum(shares) / share), LEAST_SUM / 2)
                 for share, *shares in zip(usual, *others)]
 
     def is_other_rate(self, track: Track, gaps: int, time: int) -> bool:
@@ -310,19 +296,9 @@ class ReferenceModel:
             return gaps < 0.9 * time / (SECOND * self.both.usual_delay(kind, kind, 0.5))
         return gaps > 1.1 * time / self.both.mean_gap(kind)
 
-    def step(self, track: Track, gap: int) -> float:
-        """Return what a gap adds to the sum of another pace [nat]."""
-        return self._steps[track][log_bin(gap)]
-
-    def surprise(self, track: Track, delay: int) -> float:
-        """Return how unusual a delay is [standard deviations]."""
-        _, e_j, e_i = track
-        surprise = self._surprises[track][log_bin(delay)]
-        period = self.both.mean_gap(e_i)
-        shortest, longest = self._harmless(e_i, e_j)
-        shifts = (0.0, period, -period)
-        harmless = any(shortest <= delay + shift <= longest for shift in shifts)
-        return 0.0 if surprise > 0.5 and harmless else surprise
+    def step(self, track: Track, delay: int) -> float:
+        """Return what a gap or a delay adds to the sum of its track [nat]."""
+        return self._steps[track][log_bin(delay)]
 
     @lru_cache(maxsize=None)
     def counts_requests(self, track: Track) -> bool:
@@ -361,4 +337,4 @@ class ReferenceModel:
         if label == 'company':
             gap = 1.0 if is_mode(track[2]) else self.both.usual_delay(track[2], track[2], 0.5)
             return max(3.0, 0.5 / gap) if gap > 0 else 3.0
-        return 2 * MOST_SURPRISE + 1 if label == 'pairs' else LEAST_PACE
+        return LEAST_SUM

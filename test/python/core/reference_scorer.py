@@ -7,10 +7,8 @@ from typing import Dict, List, Optional, Sequence, Tuple
 from reference_evidence import (BETWEEN_STALLS, LABELS, LONGEST_STALL_OF_TRAINING, MS, SECOND,
                                 SHORTEST_STALL, Event, ReferenceModel, Track, is_mode)
 
-DRIFT = 1.0  # what every delay takes from its sum
 ARMING_EVENTS = 30
 MOST_FAILURES = 10
-USUAL_SURPRISE = 0.3
 GONE_GAPS = 5
 LATE = 1.2  # mean gaps
 MOST_BEHIND = 2.0 * SECOND
@@ -19,7 +17,6 @@ MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
 NEWS = 3  # windows
 START_TIME = 60 * SECOND
-REGIME = 120 * SECOND
 LONGEST_STALL = 700 * MS
 
 
@@ -29,33 +26,32 @@ class Arming:
     def __init__(self) -> None:
         self.failures = 0
         self.armed = False
-        self._surprises: List[float] = []
+        self._steps: List[float] = []
 
-    def add(self, surprise: float) -> None:
-        """Add an event."""
+    def add(self, step: float) -> None:
+        """Add an event, by what it adds to the sum."""
         if self.armed:
             return
-        self._surprises.append(surprise)
+        self._steps.append(step)
         needed = ARMING_EVENTS * 2 ** min(self.failures, MOST_FAILURES)
-        if len(self._surprises) == needed:
-            self.armed = sum(self._surprises) <= USUAL_SURPRISE * needed
+        if len(self._steps) == needed:
+            self.armed = sum(self._steps) <= 0.0
             self.failures += not self.armed
-            self._surprises = []
+            self._steps = []
 
     def disarm(self) -> None:
         """Begin again."""
         self.armed = False
-        self._surprises = []
+        self._steps = []
 
 
 class Watch:
-    """The sum of the surprises of a track."""
+    """The sum of what the events of a track say."""
 
     def __init__(self, cap: float) -> None:
         self._cap = cap
         self.sum = 0.0
         self.arming = Arming()
-        self.regime = 0.0
         self.behind = 0.0  # [ns]
         self.gaps, self.lasted = 0, 0  # since the sum was 0 [ns]
         self.abnormal_since: Optional[int] = None
@@ -69,7 +65,6 @@ class Watch:
         """Forget the sum, but not how often arming failed."""
         self.sum = 0.0
         self.arming.disarm()
-        self.regime = 0.0
         self.abnormal_since = None
         self.abnormal_windows = 0
 
@@ -178,13 +173,11 @@ class ReferenceScorer:
         own, before = self._last.get(to), self._last.get(other)
         if before is None or (own is not None and before[1] < own[1]):
             return
-        surprise = self._model.surprise(track, t - before[0])
         if self._has_waited(t):
             return
-        watch.add(surprise - max(watch.regime, 0.0) - DRIFT)
-        elapsed = min(max(t - own[0], 0), REGIME) if own is not None else 0
-        watch.regime += (surprise - watch.regime) * elapsed / REGIME
-        watch.arming.add(surprise)
+        step = self._model.step(track, t - before[0])
+        watch.add(step)
+        watch.arming.add(step)
 
     def _fail(self, end: int) -> None:
         for track, watch in self._watches.items():

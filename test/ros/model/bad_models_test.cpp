@@ -180,7 +180,7 @@ TEST_F(BadModelsTest, RecordingsThatCannotBeAreRefused) {
 TEST_F(BadModelsTest, WhatIsThereTwiceIsRefused) {
   EXPECT_NE(damagedModel([](TrainedModel& m) { m.watched.tracks.at(1) = m.watched.tracks.at(0); }),
             "");
-  EXPECT_NE(damagedPart("/model", rename("fewest_gaps", "fewest_busy")), "");
+  EXPECT_NE(damagedPart("/model", rename("fewest_gaps", "several")), "");
 }
 
 TEST_F(BadModelsTest, WhatAnotherProgramChangedIsRefused) {

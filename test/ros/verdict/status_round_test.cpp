@@ -255,8 +255,8 @@ TEST(DiagnosticStatus, SaysWithWhatLateAnswersAreFound) {
   EXPECT_EQ(saidOfFirst(state, "late answers"), "");
   state.coverage.front().more_starts = 2;
   EXPECT_EQ(saidOfFirst(state, "late answers"), "after 2 more starts");
-  state.coverage.front().late_answers = true;
-  EXPECT_EQ(saidOfFirst(state, "late answers"), "found");
+  state.coverage.front().late_answers = 0.06;
+  EXPECT_EQ(saidOfFirst(state, "late answers"), "from 60 ms");
 }
 
 TEST(StatusRound, WhatIsNotOkIsSaidEveryFiveSeconds) {

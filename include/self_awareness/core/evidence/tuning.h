@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <set>
 #include <string>
@@ -15,7 +16,6 @@ namespace self_awareness::core::evidence {
 struct Tuning {
   // What is known well enough to be judged.
   double fewest_gaps = 8;
-  double fewest_delays_of_pair = 200;
   double predecessors = 2;
   double deadlines = 3;
 
@@ -25,34 +25,23 @@ struct Tuning {
   double chance_of_any = 0.1;
   double chance_of_one = 0.05;
   double irregular = 2;
-  double least_chance_misses = 0.2;
-  double least_chance_misses_of_pausing = 0.02;
-  double most_of_chance_misses = 0.75;
   double most_misses = 0.5;
   double rare_misses = 0.02;
   double least_of_longest = 0.1;
-  double fewest_of_broadcast = 4;
 
   // The evidence of gaps and delays.
   double least_told = 100;
-  double least_pace = 8;
-  double most_surprise = 6;
-  double least_deviation = 0.5;
+  double least_sum = 8;
   double usual = 0.9;
   double least_effect = 0.005;
   double least_effect_of_period = 0.02;
-  double drift = 1;
-  double slow_change = 120;
   double most_of_limit = 1.5;
   double arming_events = 30;
-  double usual_surprise = 0.3;
   double gone_gaps = 5;
   double accept_after = 60;
 
   // Who never came.
   double start_time = 60;
-  double due_times = 2;
-  double alarm_times = 4;
 
   // A machine that stands still, or is busy.
   double shortest_stall = 0.05;
@@ -60,8 +49,7 @@ struct Tuning {
   double between_stalls = 30;
   double starved = 0.5;
   double usual_load_time = 600;
-  double longest_starvation = 60;
-  double fewest_busy = 4;
+  double several = 4;
   double busy_one_in = 3;
 
   // From what recordings show to limits.
@@ -74,7 +62,6 @@ struct Tuning {
   double fast = 2;
   double pauses = 10;
   double prior_pauses = 1.5;
-  double least_deadline = 0.5;
   double least_requests = 3;
   double owed_of_silence = 0.9;
   double most_mean_gaps = 3;
@@ -85,7 +72,7 @@ struct Tuning {
   double least_share = 0.3;
 
   // The attributes of messages.
-  double least_age = 0.5;
+  double least_lateness = 0.5;
   double usual_losses = 0.003;
   double least_losses = 1.5;
   double least_size = 1;
@@ -100,6 +87,11 @@ struct Tuning {
   /// Least effect on the delay from one event type to another [ns] (docs/method.md, section 3.5).
   /// @param period mean gap of the one that the delay counts from [ns]
   double leastEffectOnDelay(double period) const;
+  /// Whether so many delays of training say what is usual: each speaks against another one by half
+  /// of log 2, or more.
+  bool areEnough(std::uint64_t delays) const {
+    return static_cast<double>(delays) >= 2 * least_told;
+  }
   bool isOn(const std::string& channel) const { return without.count(channel) == 0; }
 };
 

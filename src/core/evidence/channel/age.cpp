@@ -93,7 +93,7 @@ std::unique_ptr<const Expectation> Age::expect(const Model& model, const Halves&
         usual.middle = ageOf(quantile(ages, 0.5));
         usual.longest = ageOf(quantile(ages, kUsualTo));
         usual.least_limit =
-            std::max(model.tuning().least_age,
+            std::max(model.tuning().least_lateness,
                      (usual.middle < 0 ? kTwoClassesAhead : kTwoClasses) * std::abs(usual.middle));
         return usual;
       });

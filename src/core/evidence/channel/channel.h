@@ -43,9 +43,7 @@ struct Choice {
     return gains(from, to) >= tuning.least_gain && !isMode(from) && !isMode(to);
   }
   /// Whether there are enough delays from one to another one.
-  bool areEnough(EventId from, EventId to) const {
-    return static_cast<double>(both.total(from, to)) >= tuning.fewest_delays_of_pair;
-  }
+  bool areEnough(EventId from, EventId to) const { return tuning.areEnough(both.total(from, to)); }
 };
 
 /// Evidence of one channel in a recording: what it must remember of the events.
@@ -105,6 +103,11 @@ class Expectation {
   /// How long evidence takes to become so much, at the usual pace of the other event type [ns]; 0:
   /// not known, or there is no other one.
   virtual double timeUntil(std::size_t /*track*/, double /*evidence*/) const { return 0; }
+  /// How much later than usual events must come, for a minute (Tuning::accept_after), to get
+  /// beyond a limit [ns]; none: it is not about that, or no delay does.
+  virtual std::optional<double> leastDelayFound(std::size_t /*track*/, double /*limit*/) const {
+    return std::nullopt;
+  }
   /// The limit of a track, in units of its evidence; NaN: of no use (docs/method.md, section 5.4).
   /// @param largest evidence that was seen
   /// @param most that is normal

@@ -73,7 +73,7 @@ class ExpectedCompany : public Expectation {
     const Tuning& tuning = model_.tuning();
     // A hiccup of a host is no fault, however fast the other is.
     return std::max(tuning.least_requests,
-                    usual_gap > 0 ? tuning.least_deadline / usual_gap : 0.0);
+                    usual_gap > 0 ? tuning.least_lateness / usual_gap : 0.0);
   }
   double timeUntil(std::size_t track, double evidence) const override {
     const EventId from = model_.tracks()[track].from;

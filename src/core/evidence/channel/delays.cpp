@@ -1,5 +1,6 @@
 #include "core/evidence/channel/delays.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <iterator>
@@ -8,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "core/evidence/count/bin_arrays.h"
+#include "core/evidence/channel/sum.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
@@ -19,42 +20,34 @@ constexpr std::size_t kFewestBefore = 10;
 // If fewer of the unusual delays lie on one side of the usual one, they are scattered around it.
 constexpr double kOneSided = 0.8;
 
-/// Mean and standard deviation of -log P of a pair's delays, learned from one half of the training
-/// and measured on the other, both ways.
-class HeldOutSurprise {
- public:
-  explicit HeldOutSurprise(double least_deviation) : least_deviation_(least_deviation) {}
-
-  void add(const DelayHistogram& learned, const DelayHistogram& measured) {
-    if (learned.total() == 0) {
-      return;
-    }
-    const LogProbabilities log_probabilities = learned.logProbabilities();
-    const auto logs = asArray(log_probabilities);
-    const auto counts = asArray(measured).cast<double>();
-    count_ += counts.sum();
-    sum_ -= (counts * logs).sum();
-    squares_ += (counts * logs.square()).sum();
-  }
-  double mean() const { return count_ > 0 ? sum_ / count_ : 0; }
-  double deviation() const {
-    const double variance = count_ > 0 ? squares_ / count_ - mean() * mean() : 0;
-    return std::max(std::sqrt(std::max(variance, 0.0)), least_deviation_);
-  }
-
- private:
-  double least_deviation_;  // delays that all fall into one bin vary by nothing
-  double count_ = 0;
-  double sum_ = 0;
-  double squares_ = 0;
-};
-
 double lowerEdge(std::size_t bin) {
   return static_cast<double>(log_bins::lowerEdge(bin));
 }
 
 double upperEdge(std::size_t bin) {
   return bin + 1 < log_bins::kBins ? lowerEdge(bin + 1) : std::numeric_limits<double>::infinity();
+}
+
+/// The delays of training, by bin. For the part of a bin that is no further than `effect` [ns]
+/// from another one, it has as many as that: so small a change is no fault. A period [ns] is a
+/// circle: two that come at one moment come in any order.
+std::array<double, kDelayBins> tolerant(const DelayHistogram& delays, double effect,
+                                        double period) {
+  std::array<double, kDelayBins> counts{};
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    counts[bin] = delays[bin];
+    const double width = upperEdge(bin) - lowerEdge(bin);
+    for (std::size_t other = 0; other + 1 < delays.size() && std::isfinite(width); ++other) {
+      double near = 0;
+      for (const double turn : {-period, 0.0, period}) {
+        near += std::max(std::min(upperEdge(other) + effect + turn, upperEdge(bin)) -
+                             std::max(lowerEdge(other) - effect + turn, lowerEdge(bin)),
+                         0.0);
+      }
+      counts[bin] = std::max(counts[bin], std::min(near / width, 1.0) * delays[other]);
+    }
+  }
+  return counts;
 }
 
 using SeenDelays = std::vector<SeenDelay>;
@@ -146,63 +139,20 @@ Kind kindOf(const Reason& reason, bool scattered) {
 
 }  // namespace
 
-DelaySurprise::DelaySurprise(const Model& model, const Halves& halves, EventId from, EventId to) {
+DelaySteps::DelaySteps(const Model& model, EventId from, EventId to) {
   const Tuning& tuning = model.tuning();
-  HeldOutSurprise usual(tuning.least_deviation);
-  usual.add(halves[0].delays(from, to), halves[1].delays(from, to));
-  usual.add(halves[1].delays(from, to), halves[0].delays(from, to));
-  const LogProbabilities logs = model.learned().delays(from, to).logProbabilities();
-  std::transform(logs.begin(), logs.end(), by_bin_.begin(), [&](double log) {
-    return std::min((-log - usual.mean()) / usual.deviation(), tuning.most_surprise);
-  });
-  learnHarmless(model, from, to);
-  for (std::size_t bin = 0; bin < by_bin_.size(); ++bin) {
-    if (isHarmlessBin(bin)) {
-      by_bin_[bin] = std::min(by_bin_[bin], 0.0);
-    }
-  }
-}
-
-void DelaySurprise::learnHarmless(const Model& model, EventId from, EventId to) {
-  const Tuning& tuning = model.tuning();
+  const DelayHistogram delays = model.learned().delays(from, to);
   const double period = model.learned().type(from).meanGap();
-  const double effect = tuning.leastEffectOnDelay(period);
-  period_ = period;
-  const DelayHistogram::Bins usual = model.learned().delays(from, to).middle(tuning.usual);
-  shortest_ = lowerEdge(usual.first) - effect;
-  longest_ = upperEdge(usual.last) + effect;
-}
-
-bool DelaySurprise::isHarmlessBin(std::size_t bin) const {
-  const auto lies = [&](double shift) {
-    return lowerEdge(bin) + shift >= shortest_ && upperEdge(bin) + shift <= longest_;
-  };
-  // The bin that a period lies in is wide.
-  const bool ends_period = lowerEdge(bin) < period_ && period_ <= upperEdge(bin);
-  return lies(0) ||
-         (period_ > 0 && (lies(period_) || lies(-period_) || (ends_period && shortest_ <= 0)));
-}
-
-ExpectedDelays::ExpectedDelays(const Model& model, const Halves& halves,
-                               std::vector<std::size_t> tracks)
-    : Expectation(std::move(tracks)), model_(model) {
-  for (const std::size_t track : this->tracks()) {
-    surprises_.emplace_back(model, halves, model.tracks()[track].from, model.tracks()[track].to);
+  const auto counts = tolerant(delays, tuning.leastEffectOnDelay(period), period);
+  // Another delay is any that is possible before the next `from`, each bin as probable.
+  const std::size_t last =
+      std::max(delays.middle(tuning.usual).last, log_bins::bin(static_cast<std::int64_t>(period)));
+  // Half a count more in every bin (Krichevsky and Trofimov 1981).
+  const double all = static_cast<double>(delays.total()) + 0.5 * kDelayBins;
+  for (std::size_t bin = 0; bin < by_bin_.size(); ++bin) {
+    const double other = bin <= last ? 1 / static_cast<double>(last + 1) : 0;
+    by_bin_[bin] = stepOfSum(other * all / (counts[bin] + 0.5), tuning.least_sum);
   }
-}
-
-double ExpectedDelays::leastLimit(std::size_t /*track*/) const {
-  // One late event makes two unusual delays, one too long and one too short: they must not be
-  // enough.
-  return 2 * model_.tuning().most_surprise + 1;
-}
-
-double ExpectedDelays::limit(std::size_t /*track*/, double largest, double most) const {
-  return limitOfSum(largest, most);
-}
-
-const Track& ExpectedDelays::track(std::size_t number) const {
-  return model_.tracks()[tracks()[number]];
 }
 
 void describeDelays(const std::vector<SeenDelay>& seen, double cap, double usual, std::int64_t now,

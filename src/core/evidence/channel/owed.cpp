@@ -32,7 +32,7 @@ class ExpectedAnswers : public Expectation {
 
   std::unique_ptr<ChannelState> start() const override;
   double leastLimit(std::size_t track) const override {
-    return countsRequests(track) ? model_.tuning().least_requests : model_.tuning().least_deadline;
+    return countsRequests(track) ? model_.tuning().least_requests : model_.tuning().least_lateness;
   }
   double timeUntil(std::size_t track, double evidence) const override {
     return evidence * (countsRequests(track) ? model_.meanGap(model_.tracks()[track].from) : 1e9);

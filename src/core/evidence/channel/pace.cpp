@@ -67,8 +67,7 @@ ByBin stepsOf(const DelayHistogram& gaps, Pace::Side side, const Tuning& tuning)
     addPace(bins, 1.0 / 3 / (kMostBins - kTwice));
   }
   for (double& step : steps) {
-    // Two lost messages must not be enough.
-    step = std::min(std::log((1 + step) / 2), tuning.least_pace / 2);
+    step = stepOfSum(step, tuning.least_sum);
   }
   return steps;
 }
@@ -135,41 +134,34 @@ class PacesState : public ChannelState {
     if (pace.catchesUp(static_cast<double>(gap), step, expected_.meanGap(number)) || !counts) {
       step = 0;
     }
-    if (pace.sum <= 0) {
-      pace.since = arrival.last_stamp;
-      pace.gaps = 0;
-    }
+    pace.gaps = pace.sum.add(step, arrival.last_stamp) ? 1 : pace.gaps + 1;
     pace.last = arrival.stamp;
-    ++pace.gaps;
-    pace.sum = std::clamp(pace.sum + step, 0.0, pace.cap);
   }
   // The history of one event type has no phase that could be another one: its pace counts always.
   void disarm(EventId id) override { forget(id); }
   void forget(EventId id) override {
     if (number_of_[id] != kNoNumber) {
-      paces_[number_of_[id]].sum = 0;
+      paces_[number_of_[id]].sum.value = 0;
     }
   }
   void restart() override;
   void capAt(const std::vector<double>& limits) override;
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
   std::optional<std::int64_t> onset(std::size_t track) const override {
-    return paces_[expected_.numberOf(track)].since;
+    return paces_[expected_.numberOf(track)].sum.since;
   }
   void explain(std::size_t track, const Heard& /*heard*/, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
     const OfType& pace = paces_[expected_.numberOf(track)];
-    const double time = std::max(toSeconds(pace.last - pace.since), kLeastTime);
+    const double time = std::max(toSeconds(pace.last - pace.sum.since), kLeastTime);
     expected_.describe(suspect.id, pace.gaps, time, suspect.reason);
   }
 
  private:
   struct OfType {
-    double sum = 0;
-    double cap = kMostSum;
-    std::int64_t since = 0;  // begin of the first gap since the sum was 0 [ns]
+    Sum sum;                 // since the begin of the first gap
     std::int64_t last = 0;   // end of the last one [ns]
-    std::uint32_t gaps = 0;  // since then
+    std::uint32_t gaps = 0;  // since the sum was 0
     double behind = 0;       // what gaps were too long, of which none was as usual since [ns]
 
     /// Whether a gap is short since its message waited, or the one before it did.
@@ -196,7 +188,7 @@ ExpectedPaces::ExpectedPaces(const Model& model, std::vector<std::size_t> tracks
     // What training does not tell, the gaps of now have to, also where messages come in clumps.
     const Tuning& tuning = model.tuning();
     const bool is_told = toldBy(gaps, steps_.back()) >= tuning.least_told;
-    least_.push_back(is_told ? tuning.least_pace : tuning.least_told);
+    least_.push_back(is_told ? tuning.least_sum : tuning.least_told);
     mean_gaps_.push_back(model.meanGap(id));
     usual_gaps_.push_back(side == Pace::Side::kSlower ? model.usualDelay(id, id, 0.5)
                                                       : model.meanGap(id));
@@ -241,14 +233,14 @@ PacesState::PacesState(const ExpectedPaces& expected)
 
 void PacesState::restart() {
   for (OfType& pace : paces_) {
-    pace.sum = 0;
+    pace.sum.value = 0;
     pace.behind = 0;
   }
 }
 
 void PacesState::capAt(const std::vector<double>& limits) {
   for (std::size_t number = 0; number < paces_.size(); ++number) {
-    double& cap = paces_[number].cap;
+    double& cap = paces_[number].sum.cap;
     cap = capOfSum(limits[expected_.tracks()[number]], most_of_limit_, cap);
   }
 }
@@ -256,9 +248,9 @@ void PacesState::capAt(const std::vector<double>& limits) {
 void PacesState::closeWindow(const Heard& /*heard*/, std::vector<double>& evidence) {
   for (std::size_t number = 0; number < paces_.size(); ++number) {
     const OfType& pace = paces_[number];
-    const auto time = static_cast<double>(pace.last - pace.since);
+    const auto time = static_cast<double>(pace.last - pace.sum.since);
     const bool is_other = expected_.isOtherRate(number, pace.gaps, time);
-    evidence[expected_.tracks()[number]] = is_other ? pace.sum : 0;
+    evidence[expected_.tracks()[number]] = is_other ? pace.sum.value : 0;
   }
 }
 

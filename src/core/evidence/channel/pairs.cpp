@@ -3,18 +3,39 @@
 #include <algorithm>
 #include <optional>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "core/evidence/channel/delays.h"
+#include "core/evidence/channel/sum.h"
 #include "core/evidence/watch/arming.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-class ExpectedPairs : public ExpectedDelays {
+class ExpectedPairs : public Expectation {
  public:
-  using ExpectedDelays::ExpectedDelays;
+  ExpectedPairs(const Model& model, std::vector<std::size_t> tracks)
+      : Expectation(std::move(tracks)), model_(model) {
+    for (std::size_t number = 0; number < this->tracks().size(); ++number) {
+      steps_.emplace_back(model, track(number).from, track(number).to);
+    }
+  }
   std::unique_ptr<ChannelState> start() const override;
+  double leastLimit(std::size_t /*track*/) const override { return model_.tuning().least_sum; }
+  double limit(std::size_t /*track*/, double largest, double most) const override {
+    return limitOfSum(largest, most);
+  }
+  std::optional<double> leastDelayFound(std::size_t track, double limit) const override;
+  const DelaySteps& steps(std::size_t number) const { return steps_[number]; }
+  const Model& model() const { return model_; }
+  /// The track of a number from 0 on: its event types.
+  const Track& track(std::size_t number) const { return model_.tracks()[tracks()[number]]; }
+
+ private:
+  const Model& model_;
+  std::vector<DelaySteps> steps_;  // by number
 };
 
 class PairsState : public ChannelState {
@@ -27,18 +48,17 @@ class PairsState : public ChannelState {
     // constant.
     const std::int64_t* const stamps = heard.stamps();
     const std::uint64_t* const numbers = heard.numbers();
-    const double share = numbers_.shareOfRegime(arrival.stamp - arrival.last_stamp);
     const Range range = pairs_of_[arrival.id];
     for (std::uint32_t number = range.begin; number < range.end; ++number) {
       Pair& pair = pairs_[number];
       // Only the first event after another counts: later ones, while the other pauses, would count
       // one pause many times. No branch, since the processor cannot predict which one is first.
       const bool first = numbers[pair.from] >= arrival.last;
-      const double surprise = (*pair.surprise)(arrival.stamp - stamps[pair.from]);
-      pair.sum.add(arrival.stamp, surprise, first && !arrival.stalled ? 1.0 : 0.0, share,
-                   numbers_);
+      const bool counts = first && !arrival.stalled;
+      const double step = (*pair.steps)(arrival.stamp - stamps[pair.from]) * (counts ? 1.0 : 0.0);
+      pair.sum.add(step, arrival.stamp);
       if (!pair.armed) {
-        arm(number, numbers[pair.from] > 0, first && !arrival.stalled, surprise);
+        arm(number, numbers[pair.from] > 0, counts, step);
       }
     }
   }
@@ -76,8 +96,8 @@ class PairsState : public ChannelState {
   struct Pair {
     EventId from = 0;
     bool armed = false;
-    const DelaySurprise* surprise = nullptr;
-    DelaySum sum;
+    const DelaySteps* steps = nullptr;
+    Sum sum;  // since the stamp of the first delay
   };
   struct Range {
     std::uint32_t begin = 0;
@@ -86,17 +106,17 @@ class PairsState : public ChannelState {
 
   /// Takes in a delay of a pair that is not armed. Of one whose other event type was never heard,
   /// what was added to the sum is taken back here: so the many others need no check.
-  void arm(std::uint32_t number, bool heard, bool first, double surprise);
+  void arm(std::uint32_t number, bool heard, bool counts, double step);
   const Pair& pairOf(std::size_t track) const {
     return pairs_[pair_of_[expected_.numberOf(track)]];
   }
   void clear(std::uint32_t number) {
-    pairs_[number].sum.clear();
+    pairs_[number].sum.value = 0;
     pairs_[number].armed = false;
   }
 
   const ExpectedPairs& expected_;
-  DelayNumbers numbers_;
+  double most_of_limit_;
   Arming::Numbers arming_numbers_;
   bool has_limits_ = false;
   std::vector<Pair> pairs_;                       // by `to`
@@ -107,13 +127,32 @@ class PairsState : public ChannelState {
   std::vector<std::vector<std::uint32_t>> with_;  // numbers of the pairs of a type, by id
 };
 
+std::optional<double> ExpectedPairs::leastDelayFound(std::size_t track, double limit) const {
+  const Track& pair = model_.tracks()[track];
+  const DelayHistogram delays = model_.learned().delays(pair.from, pair.to);
+  const double period = std::max(model_.meanGap(pair.from), model_.meanGap(pair.to));
+  const double events = 1e9 * model_.tuning().accept_after / period;
+  for (std::size_t bin = 1; bin < kDelayBins && log_bins::middle(bin) < period; ++bin) {
+    const double later = log_bins::middle(bin);
+    double sum = 0;
+    for (std::size_t usual = 0; usual < kDelayBins; ++usual) {
+      sum += delays[usual] *
+             steps_[numberOf(track)](static_cast<std::int64_t>(log_bins::middle(usual) + later));
+    }
+    if (sum / static_cast<double>(delays.total()) * events > limit) {
+      return later;
+    }
+  }
+  return std::nullopt;
+}
+
 std::unique_ptr<ChannelState> ExpectedPairs::start() const {
   return std::make_unique<PairsState>(*this);
 }
 
 PairsState::PairsState(const ExpectedPairs& expected)
     : expected_(expected),
-      numbers_(expected.model().tuning()),
+      most_of_limit_(expected.model().tuning().most_of_limit),
       arming_numbers_(expected.model().tuning()),
       pair_of_(expected.tracks().size()),
       arming_(expected.tracks().size()),
@@ -132,18 +171,18 @@ PairsState::PairsState(const ExpectedPairs& expected)
       with_[track.from].push_back(here);
       track_of_.push_back(expected.tracks()[number]);
       pair_of_[number] = here;
-      pairs_.push_back({track.from, false, &expected.surprise(number), {}});
+      pairs_.push_back({track.from, false, &expected.steps(number), {}});
     }
     range.end = static_cast<std::uint32_t>(pairs_.size());
     pairs_of_.push_back(range);
   }
 }
 
-void PairsState::arm(std::uint32_t number, bool heard, bool first, double surprise) {
+void PairsState::arm(std::uint32_t number, bool heard, bool counts, double step) {
   if (!heard) {
     pairs_[number].sum.value = 0;
-  } else if (first) {
-    arming_[number].add(surprise, arming_numbers_);
+  } else if (counts) {
+    arming_[number].add(step, arming_numbers_);
     pairs_[number].armed = arming_[number].armed();
   }
 }
@@ -158,14 +197,16 @@ void PairsState::restart() {
 void PairsState::capAt(const std::vector<double>& limits) {
   has_limits_ = true;
   for (std::size_t number = 0; number < pairs_.size(); ++number) {
-    pairs_[number].sum.capAt(limits[track_of_[number]], numbers_);
+    double& cap = pairs_[number].sum.cap;
+    cap = capOfSum(limits[track_of_[number]], most_of_limit_, cap);
   }
 }
 
 void PairsState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
   for (std::uint32_t number = 0; number < pairs_.size(); ++number) {
     Pair& pair = pairs_[number];
-    if (has_limits_ && arming_[number].fails(pair.sum.isAbnormal(numbers_), pair.sum.value <= 0,
+    const Sum& sum = pair.sum;
+    if (has_limits_ && arming_[number].fails(sum.value * most_of_limit_ > sum.cap, sum.value <= 0,
                                              heard.windowEnd(), arming_numbers_)) {
       clear(number);
     }
@@ -179,11 +220,8 @@ void PairsState::explain(std::size_t track, const Heard& heard, const RecentEven
   const EventId to = suspect.id;
   const EventId from = model.tracks()[track].from;
   const Pair& pair = pairOf(track);
-  DelaySum sum;
-  sum.cap = pair.sum.cap;
   std::vector<SeenDelay> seen;
   std::optional<std::int64_t> since;  // stamp of the last `from`, until a `to` comes after it
-  std::optional<std::int64_t> last;   // stamp of the last `to`
   for (const RecentEvents::Remembered& event : events.of(from, to)) {
     if (event.id == from) {
       since = event.stamp;
@@ -191,18 +229,15 @@ void PairsState::explain(std::size_t track, const Heard& heard, const RecentEven
     }
     if (since) {
       const std::int64_t delay = std::max<std::int64_t>(event.stamp - *since, 0);
-      const double step =
-          sum.add(event.stamp, (*pair.surprise)(delay), event.stalled ? 0.0 : 1.0,
-                  numbers_.shareOfRegime(last ? event.stamp - *last : 0), numbers_);
+      const double step = event.stalled ? 0 : (*pair.steps)(delay);
       seen.push_back({event.stamp, static_cast<double>(delay), step});
       since.reset();
     }
-    last = event.stamp;
   }
   suspect.reason.after = toString(model.vocabulary().at(from));
   suspect.reason.usual_shortest = 1e-9 * model.usualDelay(from, to, 0.05);
   suspect.reason.usual_longest = 1e-9 * model.usualDelay(from, to, 0.95);
-  describeDelays(seen, sum.cap, model.usualDelay(from, to, 0.5), heard.windowEnd(),
+  describeDelays(seen, pair.sum.cap, model.usualDelay(from, to, 0.5), heard.windowEnd(),
                  suspect.reason);
 }
 
@@ -229,9 +264,9 @@ std::vector<Track> Pairs::watch(const Choice& choice) const {
   return tracks;
 }
 
-std::unique_ptr<const Expectation> Pairs::expect(const Model& model, const Halves& halves,
+std::unique_ptr<const Expectation> Pairs::expect(const Model& model, const Halves& /*halves*/,
                                                  std::vector<std::size_t> tracks) const {
-  return std::make_unique<ExpectedPairs>(model, halves, std::move(tracks));
+  return std::make_unique<ExpectedPairs>(model, std::move(tracks));
 }
 
 }  // namespace self_awareness::core::evidence

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <limits>
 
-/// Where the sums of channels end: an alarm must not last much longer than its cause.
 namespace self_awareness::core::evidence {
 
 constexpr double kMostSum = 200;  ///< while its limit is not known
 
+/// Where a sum ends: an alarm must not last much longer than its cause.
 /// @param limit of the sum; NaN: it has none
 /// @param most_of_limit so many times its limit
 /// @param cap of now, which stays where there is no limit
@@ -19,5 +22,31 @@ inline double capOfSum(double limit, double most_of_limit, double cap) {
 inline double limitOfSum(double largest, double most) {
   return largest < kMostSum ? most : std::numeric_limits<double>::quiet_NaN();
 }
+
+/// What an event adds to a sum that speaks for another hypothesis [nat], by which half of the
+/// events are of another kind. Two of them must not be enough.
+/// @param ratio of the probability that the other kind has to that of training
+/// @param least limit that a sum has
+inline double stepOfSum(double ratio, double least) {
+  return std::min(std::log((1 + ratio) / 2), least / 2);
+}
+
+/// Sum of what events say, as in Page's CUSUM test: what is usual takes from it, what is unusual
+/// adds to it, and it never falls below 0. A fault that lasts is found soon, one that comes and
+/// goes is found later, and chance alone hardly adds up.
+struct Sum {
+  double value = 0;        ///< [nat]
+  double cap = kMostSum;   ///< [nat]
+  std::int64_t since = 0;  ///< when it was 0 last [ns]
+
+  /// @param from that it grows since if it is 0 now [ns]
+  /// @return whether it was 0
+  bool add(double step, std::int64_t from) {
+    const bool begins = value <= 0;
+    since = begins ? from : since;
+    value = std::clamp(value + step, 0.0, cap);
+    return begins;
+  }
+};
 
 }  // namespace self_awareness::core::evidence

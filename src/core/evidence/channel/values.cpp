@@ -96,7 +96,7 @@ class ExpectedShares : public Expectation {
         const double often = (1 + usual.share) / 2;
         usual.more = std::log(often / usual.share);
         usual.less = std::log((1 - usual.share) / (1 - often));
-        usual.least_limit = std::max(std::log(an_hour / kSumByChance), model.tuning().least_pace);
+        usual.least_limit = std::max(std::log(an_hour / kSumByChance), model.tuning().least_sum);
         usual.pause = std::max(kRateSpan, pause);
         for (const EventId id : topic.ids) {
           numbers_of_[id].push_back(number);
@@ -134,30 +134,28 @@ class SharesState : public ChannelState {
       const ExpectedShares::Usual& usual = expected_.usual(number);
       OfValue& value = values_[number];
       const bool has_it = expected_.model().tracks()[expected_.tracks()[number]].to == arrival.id;
-      if (value.sum <= 0) {
-        value.since = arrival.stamp;
+      if (value.sum.add(has_it ? usual.more : -usual.less, arrival.stamp)) {
         value.with = 0;
         value.messages = 0;
       }
       value.last = arrival.stamp;
       value.with += has_it ? 1 : 0;
       ++value.messages;
-      value.sum = std::clamp(value.sum + (has_it ? usual.more : -usual.less), 0.0, value.cap);
     }
   }
   void forget(EventId id) override {
     for (const std::size_t number : expected_.numbersOf(id)) {
-      values_[number].sum = 0;
+      values_[number].sum.value = 0;
     }
   }
   void restart() override {
     for (OfValue& value : values_) {
-      value.sum = 0;
+      value.sum.value = 0;
     }
   }
   void capAt(const std::vector<double>& limits) override {
     for (std::size_t number = 0; number < values_.size(); ++number) {
-      double& cap = values_[number].cap;
+      double& cap = values_[number].sum.cap;
       cap = capOfSum(limits[expected_.tracks()[number]], expected_.model().tuning().most_of_limit,
                      cap);
     }
@@ -166,11 +164,11 @@ class SharesState : public ChannelState {
     for (std::size_t number = 0; number < values_.size(); ++number) {
       const OfValue& value = values_[number];
       const bool lasts = heard.windowEnd() - value.last <= expected_.usual(number).pause;
-      evidence[expected_.tracks()[number]] = lasts ? value.sum : 0;
+      evidence[expected_.tracks()[number]] = lasts ? value.sum.value : 0;
     }
   }
   std::optional<std::int64_t> onset(std::size_t track) const override {
-    return values_[expected_.numberOf(track)].since;
+    return values_[expected_.numberOf(track)].sum.since;
   }
   void explain(std::size_t track, const Heard& /*heard*/, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
@@ -191,11 +189,9 @@ class SharesState : public ChannelState {
 
  private:
   struct OfValue {
-    double sum = 0;
-    double cap = kMostSum;
+    Sum sum;
     std::int64_t last = 0;       // stamp of the last message [ns]
-    std::int64_t since = 0;      // the first message since the sum was 0 [ns]
-    std::uint32_t with = 0;      // the value, since then
+    std::uint32_t with = 0;      // the value, since the sum was 0
     std::uint32_t messages = 0;  // of all values, since then
   };
 

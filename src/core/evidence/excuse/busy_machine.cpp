@@ -11,16 +11,21 @@ namespace {
 // comes and goes wherever more is begun at once than there are processors.
 constexpr double kNearlyAll = 0.9;
 
-/// Whether what is unusual is that something came late, or too seldom: who has no time does not
-/// send too often.
+/// Whether a busy machine can be why: who has no time is late, or silent, and does not send too
+/// often.
+bool mayBeBusy(const Excess& excess) {
+  return excess.channel->mayBeLate() && excess.channel->kind() != Kind::kFast;
+}
+
+/// Whether what is unusual is that something came late, or too seldom.
 bool isOfLate(const Excess& excess, const Unusual& window) {
-  if (excess.isAbsence() || !excess.channel->mayBeLate()) {
+  if (excess.isAbsence() || !mayBeBusy(excess)) {
     return false;
   }
   Suspect suspect;
   suspect.id = excess.id;
   window.scorer.explain(excess.track, window.events, suspect);
-  return suspect.reason.kind != Kind::kFast && suspect.reason.kind != Kind::kEarly;
+  return suspect.reason.kind != Kind::kEarly;
 }
 
 }  // namespace
@@ -51,7 +56,7 @@ std::optional<std::int64_t> BusyMachine::closeWindow(const Unusual& window, Judg
 
 bool BusyMachine::explains(const Excess& excess, const Unusual& window) const {
   // Who fell silent shortly before died, though it could have waited.
-  return excess.onset >= since_ && excess.channel->mayBeLate() &&
+  return excess.onset >= since_ && mayBeBusy(excess) &&
          (!excess.isAbsence() || mayHold(excess.id, window.heard()));
 }
 
@@ -98,7 +103,7 @@ std::optional<Busy> BusyMachine::late(const Unusual& window) {
   const Tuning& tuning = model_->tuning();
   // Where more are silent, something else is wrong.
   const bool many =
-      static_cast<double>(busy.late) >= tuning.fewest_busy &&
+      static_cast<double>(busy.late) >= tuning.several &&
       static_cast<double>(busy.late) * tuning.busy_one_in >=
           static_cast<double>(busy.components) &&
       static_cast<std::ptrdiff_t>(busy.late) >= std::count(silent.begin(), silent.end(), true);
@@ -168,7 +173,7 @@ bool BusyMachine::areUnrelated(const std::vector<std::size_t>& late,
         static_cast<std::size_t>(std::count_if(late.begin(), late.end(), isVictim));
     const bool is_late = !silent[cause];
     if (static_cast<double>(late.size() - victims + (is_late ? 0 : 1)) <
-        model_->tuning().fewest_busy) {
+        model_->tuning().several) {
       return false;
     }
   }

@@ -205,7 +205,7 @@ bool NewMode::wasMissed(EventId id, std::int64_t stamp, const Unusual& window) c
 
 bool NewMode::areUnrelated(const Ids& ids, const Unusual& window) const {
   const std::set<std::size_t> components = componentsOf(ids);
-  if (static_cast<double>(components.size()) < model_->tuning().fewest_busy) {
+  if (static_cast<double>(components.size()) < model_->tuning().several) {
     return false;
   }
   // Judged or not, who was not heard since, but as lately as is usual, may have died.
@@ -229,7 +229,7 @@ bool NewMode::areUnrelated(const Ids& ids, const Unusual& window) const {
     return true;
   };
   return static_cast<double>(std::count_if(components.begin(), components.end(), isRoot)) >=
-         model_->tuning().fewest_busy;
+         model_->tuning().several;
 }
 
 bool NewMode::othersGoOn(const Ids& ids, const Heard& heard) const {
@@ -248,7 +248,7 @@ void NewMode::addOff(const Acceptance& mode, const Ids& silent, const Heard& hea
       seen.push_back(id);
     }
   }
-  if (static_cast<double>(componentsOf(seen).size()) < model_->tuning().fewest_busy) {
+  if (static_cast<double>(componentsOf(seen).size()) < model_->tuning().several) {
     return;
   }
   const std::int64_t latest = lastOf(seen, heard);

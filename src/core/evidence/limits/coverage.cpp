@@ -129,7 +129,7 @@ std::string foundAfter(const Coverage& coverage, const std::string& unit) {
 
 std::string lateAnswers(const Coverage& coverage) {
   if (coverage.late_answers) {
-    return "found";
+    return "from " + rounded(1e3 * *coverage.late_answers, " ms");
   }
   std::string words = coverage.graph_helps ? "with the graph" : "";
   if (coverage.more_starts > 0 && coverage.more_starts <= Coverage::kMostStarts) {
@@ -178,7 +178,11 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
                            toSeconds(kAlarmWindows * window);
       of.found_when_asked = std::min(of.found_when_asked.value_or(found), found);
     } else if (finding == Finding::kBetween) {
-      of.late_answers = of.late_answers || judged;
+      const std::optional<double> found =
+          judged ? model.expectation(number).leastDelayFound(number, limit) : std::nullopt;
+      if (found) {
+        of.late_answers = std::min(of.late_answers.value_or(1e-9 * *found), 1e-9 * *found);
+      }
       if (!judged && number < relations.size()) {
         of.more_starts = fewer(of.more_starts, relations[number]);
         of.graph_helps = of.graph_helps ||

@@ -179,7 +179,7 @@ void LimitSearch::leaveHolesOut(std::vector<Gaps>& all) const {
   }
   for (Gaps& gaps : all) {
     if (gaps.hole_in && gaps.without_hole > 0 &&
-        static_cast<double>(components[*gaps.hole_in].size()) >= tuning_.fewest_busy) {
+        static_cast<double>(components[*gaps.hole_in].size()) >= tuning_.several) {
       gaps.hole_in.reset();
     }
     if (gaps.hole_in && samplesThatHeard(gaps) >= kFewestThatAgree) {

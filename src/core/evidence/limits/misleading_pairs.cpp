@@ -50,7 +50,7 @@ void MisleadingPairs::add(const Event& event) {
     }
   }
   last_seen_[event.id] = event.stamp;
-  if (duration_ >= toNanoseconds(tuning_.slow_change)) {
+  if (duration_ >= toNanoseconds(tuning_.shortest_part)) {
     closePart();
   }
 }

@@ -27,17 +27,17 @@ double toMilliseconds(double seconds) {
 NeverHeard::NeverHeard(const Model& model, const Limits& limits,
                        std::shared_ptr<const Upstream> upstream)
     : vocabulary_(model.vocabulary()),
-      alarm_times_(model.tuning().alarm_times),
+      margin_of_waiting_(model.tuning().margin_of_waiting),
       alarm_later_(toNanoseconds(model.tuning().start_time)),
       accept_after_(model.tuning().accept_after * 1e9),
       upstream_(std::move(upstream)),
       heard_(model.components().size(), false),
       may_be_silent_(model.size(), false) {
   const Statistics& statistics = model.statistics();
-  const double due_times = model.tuning().due_times;
+  const double margin = model.tuning().margin;
   std::vector<std::int64_t> silent;
   for (EventId id = 0; id < model.size(); ++id) {
-    silent.push_back(std::llround(due_times * static_cast<double>(model.longestGap(id))));
+    silent.push_back(std::llround(margin * static_cast<double>(model.longestGap(id))));
   }
   for (std::size_t track = 0; track < limits.tracks.size(); ++track) {
     if (model.finding(track) == Finding::kSilent && !std::isnan(limits.tracks[track])) {
@@ -65,7 +65,7 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
     }
     // What is held ready later than a start takes, somebody asked for.
     if (always && (!latched || expected.longest <= alarm_later_)) {
-      expected.late = std::llround(due_times * static_cast<double>(expected.longest));
+      expected.late = std::llround(margin * static_cast<double>(expected.longest));
       // Who holds something ready may have been started before all that is recorded.
       expected.silent = latched ? alarm_later_ : silent[id];
       all_.push_back(expected);
@@ -126,7 +126,7 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
   share_ = 0;
   for (Expected& expected : missing_) {
     const double alarm =
-        std::max(alarm_times_ * static_cast<double>(expected.started(settle_time)),
+        std::max(margin_of_waiting_ * static_cast<double>(expected.started(settle_time)),
                  static_cast<double>(expected.due(settle_time) + alarm_later_));
     expected.share = static_cast<double>(passed) / alarm;
     // A recording may lack a topic, or what is held ready: that is cut off with a bag's begin. And

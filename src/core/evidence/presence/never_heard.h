@@ -75,7 +75,7 @@ class NeverHeard {
   std::vector<Expected> rootFirst(std::vector<Expected> missing) const;
 
   Vocabulary vocabulary_;
-  double alarm_times_;        // the time for its start: then it is an alarm
+  double margin_of_waiting_;  // the time for its start: then it is an alarm
   std::int64_t alarm_later_;  // and at least so much later than due [ns]
   double accept_after_;       // so long after that, it is accepted [ns]
   std::shared_ptr<const Upstream> upstream_;

@@ -23,27 +23,25 @@ class Arming {
   struct Numbers {
     explicit Numbers(const Tuning& tuning)
         : events(static_cast<std::uint32_t>(tuning.arming_events)),
-          usual(tuning.usual_surprise),
           accept_after(toNanoseconds(tuning.accept_after)) {}
 
     std::uint32_t events;
-    double usual;               // largest mean surprise that is as in training
     std::int64_t accept_after;  // [ns]
   };
 
   bool armed() const { return armed_; }
-  /// Takes in one event of what is not armed; every block of events that is not as in training
-  /// doubles the next one.
-  void add(double surprise, const Numbers& numbers) {
-    excess_ += surprise;
+  /// Takes in one event of what is not armed, and what it adds to the sum. A block of events is as
+  /// in training if it takes from it; every other one doubles the next one.
+  void add(double step, const Numbers& numbers) {
+    sum_ += step;
     const std::uint64_t needed = std::uint64_t{numbers.events}
                                  << std::min(failures_, kMostDoublings);
     if (++events_ < needed) {
       return;
     }
-    armed_ = excess_ <= numbers.usual * static_cast<double>(needed);
+    armed_ = sum_ <= 0;
     failures_ += armed_ ? 0 : 1;
-    excess_ = 0;
+    sum_ = 0;
     events_ = 0;
   }
   /// It must be as in training once more: one of its event types was gone, or the machine stood
@@ -79,7 +77,7 @@ class Arming {
  private:
   explicit Arming(std::uint32_t failures) : failures_(failures) {}
 
-  double excess_ = 0;  // of the last events over the mean in training
+  double sum_ = 0;  // of the events of the block
   std::uint32_t events_ = 0;
   std::uint32_t failures_ = 0;
   bool armed_ = false;

@@ -74,7 +74,7 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph, const T
     all.insert(edge.subscriber);
   }
   for (const auto& [topic, subscribers] : listeners) {
-    if (static_cast<double>(subscribers.size()) >= tuning.fewest_of_broadcast &&
+    if (static_cast<double>(subscribers.size()) >= tuning.several &&
         2 * subscribers.size() > all.size()) {
       broadcasts_.insert(topic);
     }
@@ -220,14 +220,8 @@ Relations::Asked Relations::asked(EventId from, EventId to, std::uint64_t answer
   const double misses = missRate(gaps, answers);
   const double by_chance = missRateByChance(from, to);
   asked.reaches = reaches(from, to);
-  // Timers of one rate keep one phase, and so miss each other less often than by chance; who
-  // pauses, or is asked, does not.
-  const bool pauses =
-      static_cast<double>(counts_.type(to).longestGap()) > tuning_.most_mean_gaps * meanGap(to);
-  asked.beyond_chance =
-      by_chance >= (pauses || asked.reaches ? tuning_.least_chance_misses_of_pausing
-                                            : tuning_.least_chance_misses) &&
-      misses <= tuning_.most_of_chance_misses * by_chance;
+  // Where hardly an answer is missing by chance, the gaps alone say as much.
+  asked.beyond_chance = by_chance >= tuning_.rare_misses && misses < by_chance;
   asked.divergence =
       asked.beyond_chance ? divergence(static_cast<double>(gaps), misses, by_chance) : 0;
   return asked;

@@ -46,8 +46,7 @@ class Says {
   }
   /// Whether there are enough of them to be watched.
   bool areEnough(EventId from, EventId to) const {
-    return static_cast<double>(counts_[0].total(from, to) + counts_[1].total(from, to)) >=
-           tuning_.fewest_delays_of_pair;
+    return tuning_.areEnough(counts_[0].total(from, to) + counts_[1].total(from, to));
   }
 
  private:

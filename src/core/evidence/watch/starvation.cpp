@@ -17,7 +17,7 @@ constexpr std::int64_t kKept = 3 * kRateSpan;  // [ns]
 Starvation::Starvation(const Tuning& tuning)
     : starved_(tuning.starved),
       usual_time_(tuning.usual_load_time * 1e9),
-      unknown_time_(std::min(tuning.longest_starvation * 1e9, usual_time_)) {
+      unknown_time_(std::min(tuning.accept_after * 1e9, usual_time_)) {
   restart();
 }
 

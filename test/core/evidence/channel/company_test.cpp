@@ -132,8 +132,8 @@ TEST_F(CompanyTest, ALeastTimePassesHoweverFastTheOtherIs) {
     const std::size_t track = indexOf(model_->tracks(), kCompany, to, from);
     return model_->leastLimit(track);
   };
-  EXPECT_NEAR(least(kB, kA), model_->tuning().least_deadline / toSeconds(kFast), 2);
-  EXPECT_NEAR(least(kA, kB), model_->tuning().least_deadline / toSeconds(kSlow), 1);
+  EXPECT_NEAR(least(kB, kA), model_->tuning().least_lateness / toSeconds(kFast), 2);
+  EXPECT_NEAR(least(kA, kB), model_->tuning().least_lateness / toSeconds(kSlow), 1);
 }
 
 }  // namespace

@@ -122,7 +122,7 @@ TEST_F(OwedTest, ARequestThatTheNextOneOvertakesIsNoneWithoutAnAnswer) {
   });
   EXPECT_GT(missRate(model_->statistics().type(kA).gaps, model_->statistics().answers(kA, kB)),
             model_->tuning().rare_misses);
-  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_deadline);
+  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_lateness);
 }
 
 TEST_F(OwedTest, WhoeverAnswersSoonestIsAskedFirst) {

@@ -132,7 +132,7 @@ TEST(SeldomPaceTest, WhoseGapsTellLittleNeedsAFlood) {
                    seed);
   };
   const Model model(watch(countsOfSeldom(1), countsOfSeldom(2)));
-  EXPECT_EQ(leastOf(model, kFaster, kA), Tuning{}.least_pace);
+  EXPECT_EQ(leastOf(model, kFaster, kA), Tuning{}.least_sum);
   EXPECT_EQ(leastOf(model, kFaster, kC), Tuning{}.least_told);
 }
 
@@ -217,7 +217,7 @@ TEST(PaceOfFewGaps, NeedsMoreWhereTheyDoNotTellItFromAnotherOne) {
       return together({own, timer(kC, 0, end, kPeriod)});
     };
     const Model model(watch(countsOf({start(1)}), countsOf({later(start(2))})));
-    return leastOf(model, kSlower, kA) == Tuning{}.least_pace;
+    return leastOf(model, kSlower, kA) == Tuning{}.least_sum;
   };
   EXPECT_FALSE(isTold(static_cast<int>(Tuning{}.fewest_gaps), true));
   EXPECT_TRUE(isTold(100, true));

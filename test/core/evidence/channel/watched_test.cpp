@@ -126,12 +126,12 @@ TEST(EvidenceTracks, CountsOfWatchedPairsAreKeptAndOthersLeftOut) {
   EXPECT_EQ(first.only({}).delaysToAny(), first.delaysToAny());
 }
 
-// Requests of A at random, about every 4 s; B answers every so many.
-Statistics requests(std::size_t every) {
+// Requests of A at random, about every 4 s; B answers so many of so many.
+Statistics requests(std::size_t answers, std::size_t of) {
   const Events asked = irregular(kA, 0, 800 * kSecond, 4 * kSecond, 1);
   Events answered;
   for (std::size_t k = 0; k < asked.size(); ++k) {
-    if (k % every + 1 < every || every == 1) {
+    if (k % of < answers) {
       answered.push_back({asked[k].stamp + 400 * kMillisecond, kB});
     }
   }
@@ -139,16 +139,16 @@ Statistics requests(std::size_t every) {
 }
 
 TEST(EvidenceTracks, AnAnswerThatIsAskedForIsOwedUnlessItIsLeftOutTooOften) {
-  const auto isOwed = [](std::size_t every, EventId to, EventId from) {
-    const Statistics counts = requests(every);
+  const auto isOwed = [](std::size_t answers, std::size_t of, EventId to, EventId from) {
+    const Statistics counts = requests(answers, of);
     return isWatched(chosen(counts, counts), kDeadlines, to, from);
   };
-  EXPECT_TRUE(isOwed(1, kB, kA));
-  EXPECT_FALSE(isOwed(1, kA, kB)) << "a follower does not ask";
-  EXPECT_FALSE(isOwed(1, kA, kA));
-  EXPECT_TRUE(isOwed(20, kB, kA)) << "1 in 20";
-  EXPECT_TRUE(isOwed(5, kB, kA)) << "1 in 5";
-  EXPECT_FALSE(isOwed(2, kB, kA)) << "1 in 2";
+  EXPECT_TRUE(isOwed(1, 1, kB, kA));
+  EXPECT_FALSE(isOwed(1, 1, kA, kB)) << "a follower does not ask";
+  EXPECT_FALSE(isOwed(1, 1, kA, kA));
+  EXPECT_TRUE(isOwed(19, 20, kB, kA));
+  EXPECT_TRUE(isOwed(4, 5, kB, kA));
+  EXPECT_FALSE(isOwed(1, 3, kB, kA));
 }
 
 TEST(EvidenceTracks, ThoseFromOutsideAreChecked) {

@@ -136,6 +136,7 @@ TEST_F(BusyMachineTest, WhatBeganBeforeIsNotExcused) {
   EXPECT_EQ(excuseOf(now_, 1, kSlower), Excused::kBusy);
   EXPECT_EQ(excuseOf(now_ - 20 * kSecond, 1, kSlower), Excused::kNo);
   EXPECT_EQ(excuseOf(now_, 1, kAge), Excused::kNo) << "what they hold is another thing";
+  EXPECT_EQ(excuseOf(now_, 1, kFaster), Excused::kNo) << "a flood takes the time, it needs none";
 }
 
 TEST_F(BusyMachineTest, ItIsStarvedWhileProcessesWait) {

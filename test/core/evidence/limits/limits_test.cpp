@@ -216,9 +216,9 @@ TEST_F(LimitFinderTest, WhatSeveralComponentsShowInOneStartIsNoHole) {
                      timer(kB, 60 * kSecond + stands, 100 * kSecond, kPeriod),
                      timer(kC, 0, 100 * kSecond, kPeriod)});
   };
-  const auto limit_where = [&](double fewest_busy) {
+  const auto limit_where = [&](double several) {
     Tuning tuning;
-    tuning.fewest_busy = fewest_busy;
+    tuning.several = several;
     model_ = std::make_shared<Model>(
         watch(countsOf({start_with(9 * kSecond)}), countsOf({later(start_with(0))}), {}, tuning));
     LimitFinder finder(model_, {kWindow, 5 * kSecond});

@@ -348,10 +348,9 @@ Statistics pausing() {
 TEST(Relations, WhoPausesOwesAnswersThoughItSeldomMissesByChance) {
   const Statistics counts = pausing();
   const Relations relations(counts, kNoGraph, kTuning);
-  EXPECT_LT(relations.missRateByChance(kA, kB), kTuning.least_chance_misses);
   EXPECT_TRUE(relations.owed(kA, kB).watched);
   Tuning strict;
-  strict.least_chance_misses_of_pausing = strict.least_chance_misses;
+  strict.rare_misses = 2 * relations.missRateByChance(kA, kB);
   EXPECT_FALSE(Relations(counts, kNoGraph, strict).owed(kA, kB).watched);
 }
 

@@ -28,8 +28,9 @@ struct Coverage {
   std::optional<double> found_when_asked;
   /// Whether its death would be found, but is accepted as normal (docs/live.md).
   bool accepted = false;
-  /// Whether it is found that it answers late, or in another order.
-  bool late_answers = false;
+  /// How much later than usual it must answer, for a minute, so that it is found [s]; none: it is
+  /// not found, however late.
+  std::optional<double> late_answers;
   /// Starts of the robot after which that would be found, if it is not; 0: no number helps, or it
   /// is not known.
   std::size_t more_starts = 0;
@@ -55,8 +56,8 @@ struct Coverage {
 /// @param unit after each number: " s", or nothing where the reader knows it
 std::string foundAfter(const Coverage& coverage, const std::string& unit);
 
-/// Whether late answers of a component are found, in words: "found", or with what: "after 2 more
-/// starts", "with the graph", "with the graph, or after 2 more starts"; empty: with nothing.
+/// Which late answers of a component are found, in words: "from 60 ms", or with what: "after 2
+/// more starts", "with the graph", "with the graph, or after 2 more starts"; empty: with nothing.
 std::string lateAnswers(const Coverage& coverage);
 
 /// Of all components of a model, in the order of Model::components().
