@@ -301,6 +301,13 @@ class ReferenceModel:
         return self._steps[track][log_bin(delay)]
 
     @lru_cache(maxsize=None)
+    def least_usual(self, track: Track) -> float:
+        """Return what delays add on average, at most, that are as in training [nat]."""
+        _, e_j, e_i = track
+        steps = [self._steps[track][index] for index in self.both.delays[e_i, e_j]]
+        return USUAL * math.fsum(steps) / len(steps)
+
+    @lru_cache(maxsize=None)
     def counts_requests(self, track: Track) -> bool:
         """Return whether a deadline counts requests, not seconds."""
         _, to, other = track

@@ -26,23 +26,23 @@ class Arming:
     def __init__(self) -> None:
         self.failures = 0
         self.armed = False
-        self._steps: List[float] = []
+        self._excess: List[float] = []
 
-    def add(self, step: float) -> None:
-        """Add an event, by what it adds to the sum."""
+    def add(self, excess: float) -> None:
+        """Add an event, by what it adds to the sum beyond what is as in training."""
         if self.armed:
             return
-        self._steps.append(step)
+        self._excess.append(excess)
         needed = ARMING_EVENTS * 2 ** min(self.failures, MOST_FAILURES)
-        if len(self._steps) == needed:
-            self.armed = sum(self._steps) <= 0.0
+        if len(self._excess) == needed:
+            self.armed = sum(self._excess) <= 0.0
             self.failures += not self.armed
-            self._steps = []
+            self._excess = []
 
     def disarm(self) -> None:
         """Begin again."""
         self.armed = False
-        self._steps = []
+        self._excess = []
 
 
 class Watch:
@@ -177,7 +177,7 @@ class ReferenceScorer:
             return
         step = self._model.step(track, t - before[0])
         watch.add(step)
-        watch.arming.add(step)
+        watch.arming.add(step - self._model.least_usual(track))
 
     def _fail(self, end: int) -> None:
         for track, watch in self._watches.items():

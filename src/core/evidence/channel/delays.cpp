@@ -152,6 +152,8 @@ DelaySteps::DelaySteps(const Model& model, EventId from, EventId to) {
   for (std::size_t bin = 0; bin < by_bin_.size(); ++bin) {
     const double other = bin <= last ? 1 / static_cast<double>(last + 1) : 0;
     by_bin_[bin] = stepOfSum(other * all / (counts[bin] + 0.5), tuning.least_sum);
+    least_usual_ +=
+        tuning.usual * by_bin_[bin] * delays[bin] / static_cast<double>(delays.total());
   }
 }
 

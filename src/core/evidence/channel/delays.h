@@ -17,9 +17,12 @@ class DelaySteps {
 
   /// What a delay [ns] adds to the sum of the track [nat].
   double operator()(std::int64_t delay) const { return by_bin_[log_bins::bin(delay)]; }
+  /// What delays add on average [nat], at most, that are as in training.
+  double leastUsual() const { return least_usual_; }
 
  private:
   std::array<double, kDelayBins> by_bin_{};
+  double least_usual_ = 0;
 };
 
 /// A delay that a track has seen.

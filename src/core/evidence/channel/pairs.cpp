@@ -182,7 +182,7 @@ void PairsState::arm(std::uint32_t number, bool heard, bool counts, double step)
   if (!heard) {
     pairs_[number].sum.value = 0;
   } else if (counts) {
-    arming_[number].add(step, arming_numbers_);
+    arming_[number].add(step - pairs_[number].steps->leastUsual(), arming_numbers_);
     pairs_[number].armed = arming_[number].armed();
   }
 }

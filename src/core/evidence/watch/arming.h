@@ -30,18 +30,19 @@ class Arming {
   };
 
   bool armed() const { return armed_; }
-  /// Takes in one event of what is not armed, and what it adds to the sum. A block of events is as
-  /// in training if it takes from it; every other one doubles the next one.
-  void add(double step, const Numbers& numbers) {
-    sum_ += step;
+  /// Takes in one event of what is not armed. Every block of events that is not as in training
+  /// doubles the next one.
+  /// @param excess of what it adds to the sum of its track over what is as in training
+  void add(double excess, const Numbers& numbers) {
+    excess_ += excess;
     const std::uint64_t needed = std::uint64_t{numbers.events}
                                  << std::min(failures_, kMostDoublings);
     if (++events_ < needed) {
       return;
     }
-    armed_ = sum_ <= 0;
+    armed_ = excess_ <= 0;
     failures_ += armed_ ? 0 : 1;
-    sum_ = 0;
+    excess_ = 0;
     events_ = 0;
   }
   /// It must be as in training once more: one of its event types was gone, or the machine stood
@@ -77,7 +78,7 @@ class Arming {
  private:
   explicit Arming(std::uint32_t failures) : failures_(failures) {}
 
-  double sum_ = 0;  // of the events of the block
+  double excess_ = 0;  // of the events of the block
   std::uint32_t events_ = 0;
   std::uint32_t failures_ = 0;
   bool armed_ = false;

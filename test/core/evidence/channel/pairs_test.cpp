@@ -63,14 +63,21 @@ TEST_F(PairsTest, WhatWasAcceptedIsHarderToArmAgain) {
     ask(kUnusual);
   } while (evidence() > 0);
   EXPECT_FALSE(isWatched());
-  askUsually(2 * kArming - 2);
-  ask(kUnusual);
-  EXPECT_EQ(evidence(), 0) << "as many as at the start are not enough";
-  EXPECT_FALSE(isWatched());
-  askUsually(2);
+  askUsually(2 * kArming - 1);
+  EXPECT_FALSE(isWatched()) << "as many as at the start are not enough";
+  askUsually(1);
   EXPECT_TRUE(isWatched());
   ask(kUnusual);
   EXPECT_GT(evidence(), 0);
+}
+
+TEST_F(PairsTest, ABlockWithUnusualDelaysIsNotAsInTraining) {
+  useLimits();
+  askUsually(kArming - 3);
+  for (int k = 0; k < 3; ++k) {
+    ask(kUnusual);
+  }
+  EXPECT_FALSE(isWatched()) << "though most of them speak for training";
 }
 
 TEST_F(PairsTest, NothingIsAcceptedWhileLimitsAreNotKnown) {
