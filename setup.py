@@ -9,6 +9,6 @@ setup(**generate_distutils_setup(
               'self_awareness.reporting.report', 'self_awareness.training',
               'self_awareness_follow_me'],
     package_data={'self_awareness': ['py.typed', '*.pyi'],
-                  'self_awareness.reporting.report': ['*.html', '*.css', '*.js']},
+                  'self_awareness.reporting.report': ['*.html', '*.css', '*.js', '*.xml']},
     package_dir={'': 'src'},
 ))

@@ -11,7 +11,7 @@ import pytest
 from conftest import jittery_robot
 from judged_recordings import dead, judged, without_laser
 
-from self_awareness.reporting.report import figures, timeline
+from self_awareness.reporting.report import timeline
 from self_awareness.reporting.report.against import against
 from self_awareness.reporting.report.intervals import ALARM
 from self_awareness.reporting.report.neighbours import ROOT, VICTIM
@@ -40,10 +40,11 @@ def test_the_summary_and_the_details_say_who_when_and_why(evidence_model: str,
     assert (first.component, first.short) == ('/laser', 'fell silent')
     assert histogram.caption == ('gaps between two /laser /scan std_msgs/String; '
                                  'shaded: what is usual')
-    assert histogram.seen == pytest.approx(alarm.start - alarm.began)
-    assert histogram.seen > histogram.edges[-1] > 0.05
-    assert histogram.edges[0] < 0.05 < histogram.usual[1]
-    assert sum(histogram.counts) == 2399  # gaps of 2400 messages
+    usual, seen = histogram.figure['layout']['shapes']
+    bars, = histogram.figure['data']
+    assert seen['x0'] == pytest.approx(alarm.start - alarm.began)
+    assert seen['x0'] > bars['x'][-1] > 0.05 and bars['x'][0] < 0.05 < usual['x1']
+    assert bars['hovertext'][0].endswith(' of 2399')  # gaps of 2400 messages
     assert re.fullmatch(r'overdue of /laser /scan std_msgs/String: [1-9]\d\d % of its limit',
                         details.decided)
     assert details.graph.roles['/laser'] == ROOT and details.graph.roles['/slam'] == VICTIM
@@ -61,14 +62,15 @@ def test_a_rate_has_counts_and_what_is_usual(evidence_model: str, make_bag) -> N
                              usual_shortest=18.0, usual_longest=22.0, lasted=2.0, words='')
     suspect: Any = SimpleNamespace(id=laser, reason=reason)
     alarm: Any = SimpleNamespace(begin=3_021_000_000_000, end=3_032_000_000_000)
-    counts = against(of, alarm, suspect)
-    assert counts.usual == (36.0, 44.0) and counts.caption.startswith('/laser /scan')
-    by_time = dict(zip(counts.times, counts.counts))
+    shown = against(of, alarm, suspect)
+    assert shown.caption.startswith('/laser /scan')
+    counts, = shown.figure['data']
+    by_time = dict(zip(counts['x'], counts['y']))
     assert all(36 <= by_time[time] <= 44 for time in (10.0, 18.0, 36.0))
     assert all(count < 36 for time, count in by_time.items() if 22.5 < time < 29.5)
-    assert (counts.begin, counts.end) == pytest.approx((21.0, 32.0), abs=0.1)
-    drawn = figures.evidence(counts)
-    assert drawn['layout']['shapes'][0]['y0'] == 36.0
+    usual, of_alarm = shown.figure['layout']['shapes']
+    assert (usual['y0'], usual['y1']) == (36.0, 44.0)
+    assert (of_alarm['x0'], of_alarm['x1']) == pytest.approx((21.0, 32.0), abs=0.1)
 
 
 def test_lanes_and_score_agree(evidence_model: str, tmp_path: Path) -> None:
@@ -100,12 +102,6 @@ def test_long_recordings_are_drawn_in_stretches_that_lose_no_extreme(
     for index, (begin, end) in enumerate(zip(begins, [*begins[1:], len(of.verdicts.start)])):
         assert drawn.lowest[index] == of.verdicts.score[begin:end].min()
         assert drawn.abnormal[index] == of.verdicts.abnormal[begin:end].any()
-    # With many components, there are fewer.
-    components = len(of.by.trained.event_types)
-    monkeypatch.setattr(timeline, 'MOST_CELLS', 50 * components)
-    assert len(timeline.cut(of)) <= 52
-    monkeypatch.setattr(timeline, 'MOST_CELLS', components - 1)
-    assert len(timeline.cut(of)) >= 1
 
 
 def test_what_was_not_judged_is_told(evidence_model: str, make_bag) -> None:
@@ -134,6 +130,6 @@ def test_the_papers_detector_has_suspects_and_no_lanes(evidence_model: str,
         (suspect, shown) for each in found.incidents
         for suspect, shown in zip(each.main.named, found.details[each.key].evidence)
         if suspect.short == 'fell silent')
-    assert silent.component == '/laser' and shown.seen > 0.05
-    assert sum(shown.counts) == 2399
+    assert silent.component == '/laser' and shown.figure['layout']['shapes'][-1]['x0'] > 0.05
+    assert shown.figure['data'][0]['hovertext'][0].endswith(' of 2399')
     assert any('one score for all' in each.why for each in found.unjudged)

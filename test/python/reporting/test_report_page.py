@@ -14,7 +14,6 @@ from judged_recordings import judged, with_graph, without_laser
 
 from self_awareness.commands import score, train
 from self_awareness.reporting.report import figures
-from self_awareness.reporting.report.against import Histogram
 from self_awareness.reporting.report.page import save_page, save_report
 from self_awareness.reporting.report.section import section
 from self_awareness.reporting.report.timeline import MOST_LANES
@@ -76,8 +75,7 @@ def test_every_figure_is_one_that_plotly_knows(evidence_model: str, model_file: 
 
 
 def test_the_seen_delay_is_marked_in_its_histogram() -> None:
-    drawn = figures.evidence(Histogram('gaps', [0.04, 0.05, 0.06], [10, 30], 0.5, 'now: 0.5 s',
-                                       (0.045, 0.055)))
+    drawn = figures.histogram([0.04, 0.05, 0.06], [10, 30], 0.5, 'now: 0.5 s', (0.045, 0.055))
     line, = [shape for shape in drawn['layout']['shapes'] if shape['type'] == 'line']
     assert line['x0'] == line['x1'] == 0.5
     assert drawn['data'][0]['y'] == [25.0, 75.0]
@@ -88,8 +86,7 @@ def test_the_seen_delay_is_marked_in_its_histogram() -> None:
 
 @pytest.mark.parametrize('first_edge', [0.0, 0.04])
 def test_log_bins_from_0_on_can_be_drawn(first_edge: float) -> None:
-    drawn = figures.evidence(Histogram('gaps', [first_edge, 0.05, 0.6], [1, 1], None, 'none',
-                                       None))
+    drawn = figures.histogram([first_edge, 0.05, 0.6], [1, 1], None, 'none', None)
     low, high = drawn['layout']['xaxis']['range']
     assert -3 < low < high < 0
     assert all(edge > 0 for edge in drawn['data'][0]['x'])

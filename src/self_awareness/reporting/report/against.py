@@ -2,13 +2,14 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from dataclasses import dataclass
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
 from self_awareness import Alarm, Reason, Suspect, TrainedModel
+from self_awareness.reporting.report import figures
+from self_awareness.reporting.report.figures import Figure
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.text import delay
 from self_awareness.stamps import SECOND_NS
@@ -24,48 +25,11 @@ _BEFORE_S, _AFTER_S, _LONGEST_S = 20.0, 10.0, 120.0
 
 
 @dataclass(frozen=True)
-class Histogram:
-    """Delays in training, and what was seen.
-
-    Args:
-        caption: what is drawn.
-        edges: of the bins [s]; one more than bins. The last bin may have no end: it is drawn to
-            twice its beginning.
-        counts: by bin.
-        seen: delay that was seen [s]; None: there is no single one.
-        seen_text: what to write beside it.
-        usual: range of most delays in training [s]; None: not known.
-    """
+class Evidence:
+    """A figure of delays or of numbers of messages, and in words what it shows."""
 
     caption: str
-    edges: List[float]
-    counts: List[int]
-    seen: Optional[float]
-    seen_text: str
-    usual: Optional[Tuple[float, float]]
-
-
-@dataclass(frozen=True)
-class Counts:
-    """Messages of an event type by time.
-
-    Args:
-        caption: what is drawn.
-        times: ends of the spans [s] from the recording's first message.
-        counts: messages in the span that ends then.
-        usual: range of most counts in training.
-        begin, end: of the alarm [s].
-    """
-
-    caption: str
-    times: List[float]
-    counts: List[int]
-    usual: Tuple[float, float]
-    begin: float
-    end: float
-
-
-Evidence = Union[Histogram, Counts]
+    figure: Figure
 
 
 def against(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Evidence]:
@@ -73,7 +37,7 @@ def against(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Evidence
     return _delays(judged, suspect) or _rate(judged, alarm, suspect)
 
 
-def _delays(judged: Judged, suspect: Suspect) -> Optional[Histogram]:
+def _delays(judged: Judged, suspect: Suspect) -> Optional[Evidence]:
     trained = judged.by.trained
     names = [str(kind) for kind in trained.event_types]
     seen = _seen(suspect.reason)
@@ -89,8 +53,8 @@ def _delays(judged: Judged, suspect: Suspect) -> Optional[Histogram]:
                else f'delays from {names[other]} to {names[suspect.id]}')
     usual = (suspect.reason.usual_shortest, suspect.reason.usual_longest)
     known = suspect.reason.unit == 's' and not math.isnan(sum(usual))
-    return Histogram(f'{caption}; shaded: what is usual' if known else caption,
-                     edges, counts, *seen, usual if known else None)
+    return Evidence(f'{caption}; shaded: what is usual' if known else caption,
+                    figures.histogram(edges, counts, *seen, usual if known else None))
 
 
 def _log_bins(counted: Sequence[Tuple[int, int]]) -> _Bins:
@@ -109,25 +73,18 @@ def _log_bins(counted: Sequence[Tuple[int, int]]) -> _Bins:
 
 
 def _paper_bins(trained: TrainedModel, from_id: int, to_id: int) -> _Bins:
-    """Return the bins of the paper's detector; neighbours are one where there are many."""
+    """Return the bins of the paper's detector, as many to a row as leave few rows; the last row
+    has all the longer delays, too."""
     counts = trained.histogram(from_id, to_id)
     if not counts:
         return [], []
     first, last = min(counts), trained.quantile(from_id, to_id, _OWN_ROWS)
-    # As many bins to a row as leave few rows: 1, 2, 5, 10, 20, 50 and so on.
-    merged = next(step * 10 ** power for power in range(19) for step in (1, 2, 5)
-                  if (last - first) // (step * 10 ** power) < _MOST_ROWS)
-    start = first // merged * merged
-    by_row: Counter = Counter()
-    for index, count in counts.items():
-        by_row[(min(index, last + merged) - start) // merged] += count
-    rows = range(max(by_row) + 1)
-    begins = [start + row * merged for row in rows]
-    is_open = begins[-1] > last or begins[-1] <= (trained.horizon_bins or math.inf) < (
-        begins[-1] + merged)
-    begins.append(_LAST_OF_OPEN_BIN * begins[-1] if is_open else begins[-1] + merged)
-    unit = trained.bin_size / SECOND_NS
-    return [begin * unit for begin in begins], [by_row[row] for row in rows]
+    step = max(1, -(-(last + 1 - first) // _MOST_ROWS))
+    edges = np.arange(first, last + step + 1, step)
+    rows, _ = np.histogram(np.minimum(list(counts), last), edges, weights=list(counts.values()))
+    if max(counts) > last:
+        edges[-1] = max(_LAST_OF_OPEN_BIN * edges[-2], edges[-1])
+    return (edges * (trained.bin_size / SECOND_NS)).tolist(), rows.tolist()
 
 
 def _seen(reason: Reason) -> Optional[Tuple[Optional[float], str]]:
@@ -139,7 +96,7 @@ def _seen(reason: Reason) -> Optional[Tuple[Optional[float], str]]:
     return None
 
 
-def _rate(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Counts]:
+def _rate(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Evidence]:
     reason = suspect.reason
     known = reason.unit == 'Hz' and reason.lasted > 0
     if not known or math.isnan(reason.usual_shortest + reason.usual_longest):
@@ -156,6 +113,7 @@ def _rate(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Counts]:
     stamps = (judged.edges_of(suspect.id)[1:-1] - judged.recording.origin) / SECOND_NS
     counts = (np.searchsorted(stamps, times, side='right')
               - np.searchsorted(stamps, times - span, side='right'))
-    return Counts(f'{judged.recording.event_types[suspect.id]} in {delay(span)}; '
-                  'blue band: what is usual; red: the alarm', times.tolist(), counts.tolist(),
-                  (max(usual - spread, 0.0), usual + spread), begin, end)
+    return Evidence(f'{judged.recording.event_types[suspect.id]} in {delay(span)}; '
+                    'blue band: what is usual; red: the alarm',
+                    figures.counts(times.tolist(), counts.tolist(),
+                                   (max(usual - spread, 0.0), usual + spread), begin, end))

@@ -10,7 +10,6 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness.reporting.report.against import Counts, Evidence, Histogram
 from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.intervals import ALARM, Interval
 from self_awareness.reporting.report.timeline import SHOWN_LIMITS, Lanes, Timeline
@@ -62,41 +61,42 @@ def over_time(timeline: Timeline, incidents: Sequence[Incident]) -> Figure:
     return {'data': traces, 'layout': layout}
 
 
-def evidence(shown: Evidence) -> Figure:
-    """Return what speaks against a suspect."""
-    return _histogram(shown) if isinstance(shown, Histogram) else _counts(shown)
+def histogram(edges: Sequence[float], counts: Sequence[int], seen: Optional[float],
+              seen_text: str, usual: Optional[Tuple[float, float]]) -> Figure:
+    """Return delays in training, with what was seen marked in them.
 
-
-def _histogram(shown: Histogram) -> Figure:
-    """Return the delays of training, with what was seen marked in them."""
+    Args:
+        edges: of the bins [s]; one more than bins. The last bin may have no end: it is drawn to
+            twice its beginning.
+        counts: by bin.
+        seen: delay that was seen [s]; None: there is no single one.
+        seen_text: what to write beside it.
+        usual: range of most delays in training [s]; None: not known.
+    """
     # Log bins of one width: a count stands for its bin, not for its seconds.
-    edges = [max(edge, shown.edges[1] / 2 if edge <= 0 else edge) for edge in shown.edges]
-    total = sum(shown.counts)
-    traces: List[Figure] = [{
-        'type': 'bar', 'x': _rounded(edges[:-1]), 'width': _rounded(np.diff(edges)), 'offset': 0,
-        'y': [100.0 * count / total for count in shown.counts],
-        'marker': {'color': BLUE}, 'hoverinfo': 'text',
-        'hovertext': [f'{delay(low)} to {delay(high)}: {count} of {total}'
-                      for low, high, count in zip(shown.edges, shown.edges[1:], shown.counts)],
-    }]
-    shapes: List[Figure] = []
-    if shown.usual is not None:
-        shapes.append(_band(shown.usual[0], shown.usual[1], BLUE, 0.13))
-    low, high = edges[0], edges[-1]
-    if shown.seen is not None and shown.seen > 0:
-        shapes.append({'type': 'line', 'xref': 'x', 'yref': 'paper', 'x0': shown.seen,
-                       'x1': shown.seen, 'y0': 0, 'y1': 1, 'line': {'color': RED, 'width': 3}})
-        low, high = min(low, shown.seen / 1.3), max(high, shown.seen * 1.3)
-    seen = {'xref': 'paper', 'yref': 'paper', 'x': 1, 'y': 1.16, 'showarrow': False,
-            'text': f'<b>{shown.seen_text}</b>', 'font': {'color': RED, 'size': 13},
-            'xanchor': 'right'}
+    drawn = [max(edge, edges[1] / 2 if edge <= 0 else edge) for edge in edges]
+    total = sum(counts)
+    low, high = drawn[0], drawn[-1]
+    shapes = [] if usual is None else [_band(usual[0], usual[1], BLUE, 0.13)]
+    if seen is not None and seen > 0:
+        shapes.append({'type': 'line', 'xref': 'x', 'yref': 'paper', 'x0': seen, 'x1': seen,
+                       'y0': 0, 'y1': 1, 'line': {'color': RED, 'width': 3}})
+        low, high = min(low, seen / 1.3), max(high, seen * 1.3)
     axis: Figure = {'title': {'text': 'delay [s]'}, 'zeroline': False, 'range': [low, high]}
-    if edges[-1] > 3 * edges[0]:
+    if drawn[-1] > 3 * drawn[0]:
         axis.update({'type': 'log', 'range': [math.log10(low), math.log10(high)]})
-    return {'data': traces, 'layout': {
+    return {'data': [{
+        'type': 'bar', 'x': _rounded(drawn[:-1]), 'width': _rounded(np.diff(drawn)), 'offset': 0,
+        'y': [100.0 * count / total for count in counts],
+        'marker': {'color': BLUE}, 'hoverinfo': 'text',
+        'hovertext': [f'{delay(begin)} to {delay(end)}: {count} of {total}'
+                      for begin, end, count in zip(edges, edges[1:], counts)]}], 'layout': {
         'height': 210, 'margin': {'l': 46, 'r': 10, 't': 32, 'b': 44}, 'showlegend': False,
         'xaxis': axis, 'yaxis': {'title': {'text': '% in training'}, 'fixedrange': True},
-        'bargap': 0, 'shapes': shapes, 'annotations': [seen]}}
+        'bargap': 0, 'shapes': shapes, 'annotations': [
+            {'xref': 'paper', 'yref': 'paper', 'x': 1, 'y': 1.16, 'showarrow': False,
+             'text': f'<b>{seen_text}</b>', 'font': {'color': RED, 'size': 13},
+             'xanchor': 'right'}]}}
 
 
 def two_histograms(before: Bins, after: Bins) -> Figure:
@@ -120,18 +120,25 @@ def two_histograms(before: Bins, after: Bins) -> Figure:
         'yaxis': {'title': {'text': '%'}, 'fixedrange': True}}}
 
 
-def _counts(shown: Counts) -> Figure:
-    """Return the number of messages by time, with what is usual as a band."""
-    low, high = shown.usual
+def counts(times: Sequence[float], messages: Sequence[int], usual: Tuple[float, float],
+           begin: float, end: float) -> Figure:
+    """Return the messages by time, with what is usual as a band, and the alarm.
+
+    Args:
+        times: ends of the spans that are counted [s] from the recording's first message.
+        messages: in the span that ends then.
+        usual: range of most numbers in training.
+        begin, end: of the alarm [s].
+    """
     return {'data': [{
         'type': 'scatter', 'mode': 'lines', 'line': {'shape': 'hv', 'color': BLUE, 'width': 1.5},
-        'x': _rounded(shown.times, 3), 'y': shown.counts,
+        'x': _rounded(times, 3), 'y': messages,
         'hovertemplate': 'until %{x:.1f} s: %{y}<extra></extra>'}], 'layout': {
             'height': 210, 'margin': {'l': 46, 'r': 10, 't': 10, 'b': 44}, 'showlegend': False,
             'xaxis': {'title': {'text': 'time [s]'}, 'zeroline': False},
             'yaxis': {'title': {'text': 'messages'}, 'rangemode': 'tozero', 'fixedrange': True},
-            'shapes': [{**_band(0, 1, BLUE, 0.13), 'xref': 'paper', 'yref': 'y', 'y0': low,
-                        'y1': high}, _band(shown.begin, shown.end, RED, 0.12)]}}
+            'shapes': [{**_band(0, 1, BLUE, 0.13), 'xref': 'paper', 'yref': 'y', 'y0': usual[0],
+                        'y1': usual[1]}, _band(begin, end, RED, 0.12)]}}
 
 
 def _strip(stretches: Sequence[Tuple[str, Interval]]) -> Figure:

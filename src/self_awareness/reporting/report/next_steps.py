@@ -6,11 +6,11 @@ import os
 import shlex
 from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
-from xml.etree import ElementTree
 
 from self_awareness import last_log_lines
 from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.judged import Judged
+from self_awareness.reporting.report.templates import template
 from self_awareness.stamps import nanoseconds
 
 MOST_LINES = 12
@@ -19,13 +19,6 @@ MOST_LINES = 12
 _BEFORE_S, _AFTER_S = 5.0, 5.0
 _LONGEST_S = 60.0
 _MOST_TOPICS = 5
-# PlotJuggler 3 asks whether to go on without the version, and keeps the settings for later bags:
-# these are its defaults.
-_LAYOUT_VERSION = '2.3.8'
-_LOADER = 'DataLoad ROS bags'
-_LOADER_SETTINGS = {'use_header_stamp': 'false', 'use_renaming_rules': 'true',
-                    'discard_large_arrays': 'true', 'max_array_size': '100',
-                    'boolean_strings_to_number': 'true', 'remove_suffix_from_strings': 'true'}
 _LEVELS = {1: 'DEBUG', 2: 'INFO', 4: 'WARN', 8: 'ERROR', 16: 'FATAL'}
 
 
@@ -92,38 +85,15 @@ def _layout(judged: Judged, incident: Incident, begin: float, end: float) -> str
     """Return a layout that loads the topics of the suspects, and shows when messages came.
 
     PlotJuggler 3 shows all that it loads, whatever range a plot has: the name of the tab says what
-    to zoom to.
+    to zoom to. Stamps rise with the time: a line that stands still is a node that sends no more.
     """
     named = [judged.recording.event_types[suspect.of.id] for suspect in incident.main.named]
     types = {kind.scope: kind.type for kind in named[:_MOST_TOPICS]}
-    root = ElementTree.Element('root', version=_LAYOUT_VERSION)
-    tabs = ElementTree.SubElement(root, 'tabbed_widget',
-                                  {'name': 'Main Window', 'parent': 'main_window'})
-    tab = ElementTree.SubElement(
-        tabs, 'Tab', containers='1',
-        tab_name=f'{incident.cause or "alarm"}: {begin:.0f} to {end:.0f} s')
-    container = ElementTree.SubElement(tab, 'Container')
-    # Stamps rise with the time: a line that stands still is a node that sends no more.
-    curves = [f'{topic}/header/stamp' for topic, name in types.items() if _has_header(name)]
-    number = max(len(curves), 1)
-    splitter = ElementTree.SubElement(container, 'DockSplitter', orientation='-',
-                                      count=str(number),
-                                      sizes=';'.join([f'{1 / number:.3f}'] * number))
-    for curve in curves or ['']:
-        area = ElementTree.SubElement(splitter, 'DockArea', name=curve or '...')
-        plot = ElementTree.SubElement(area, 'plot', mode='TimeSeries', style='Dots')
-        if curve:
-            ElementTree.SubElement(plot, 'curve', name=curve, color='#e5484d')
-    ElementTree.SubElement(tabs, 'currentTabIndex', index='0')
-    ElementTree.SubElement(root, 'use_relative_time_offset', enabled='1')
-    files = ElementTree.SubElement(root, 'previouslyLoaded_Datafiles')
-    file = ElementTree.SubElement(files, 'fileInfo', prefix='',
-                                  filename=_files_of(judged, begin, end)[0][0])
-    ElementTree.SubElement(file, 'selected_datasources', value=';'.join(types))
-    loader = ElementTree.SubElement(file, 'plugin', ID=_LOADER)
-    for name, value in _LOADER_SETTINGS.items():
-        ElementTree.SubElement(loader, name, value=value)
-    return ElementTree.tostring(root, encoding='unicode')
+    text: str = template('layout.xml').render(
+        tab=f'{incident.cause or "alarm"}: {begin:.0f} to {end:.0f} s', topics=list(types),
+        curves=[f'{topic}/header/stamp' for topic, name in types.items() if _has_header(name)],
+        file=_files_of(judged, begin, end)[0][0])
+    return text
 
 
 def _has_header(datatype: str) -> bool:

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import base64
 import importlib.util
-import os
 import zlib
 from typing import Any, Dict, Optional, Sequence
 
@@ -12,8 +11,8 @@ from self_awareness.reporting.report import figures, neighbours
 from self_awareness.reporting.report.headline import clock
 from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.section import Details, Section
+from self_awareness.reporting.report.templates import template
 
-_FOLDER = os.path.dirname(__file__)
 _WITHOUT_EVAL = 5  # the first version of plotly whose plotly.js calls no eval()
 
 
@@ -40,16 +39,15 @@ def save_report(path: str, sections: Sequence[Section]) -> None:
             'incidents': {each.key: _drawn(each, section.details.get(each.key))
                           for each in section.incidents},
         } for section in sections]},
-        sections=sections, clock=clock,
-        draw=neighbours.draw)
+        sections=sections, clock=clock, draw=neighbours.draw)
 
 
-def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> None:
+def save_page(path: str, name: str, data: Dict[str, Any], **values: Any) -> None:
     """Write a page of this folder's style.
 
     Args:
         path: of the page.
-        template: in this folder.
+        name: of the template.
         data: what page.js draws: figures, and where they belong.
         values: of the template.
 
@@ -57,16 +55,10 @@ def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> 
         OSError: the file cannot be written.
         ValueError: a number of the data is not finite.
     """
-    # Both take long to import: only a program that writes a page imports them.
-    from jinja2 import Environment, FileSystemLoader, StrictUndefined
-    import plotly
+    import plotly  # takes long to import: only a program that writes a page imports it
     from plotly.offline import get_plotlyjs
 
-    environment = Environment(loader=FileSystemLoader(_FOLDER), autoescape=True,
-                              undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
-    # JSON has no numbers that are not finite.
-    environment.policies['json.dumps_kwargs'] = {'separators': (',', ':'), 'allow_nan': False}
-    page = environment.get_template(template).stream(
+    page = template(name).stream(
         data=data, plotly=_packed(get_plotlyjs()),
         evals=int(plotly.__version__.split('.')[0]) < _WITHOUT_EVAL, **values)
     with replacing(path) as temporary:
@@ -77,7 +69,7 @@ def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> 
 def _drawn(incident: Incident, details: Optional[Details]) -> Dict[str, Any]:
     against = [] if details is None else details.evidence
     return {'range': [round(incident.main.start, 3), round(incident.main.end, 3)],
-            'figures': {f'{incident.key}-delays-{index}': figures.evidence(evidence)
+            'figures': {f'{incident.key}-delays-{index}': evidence.figure
                         for index, evidence in enumerate(against) if evidence is not None}}
 
 
