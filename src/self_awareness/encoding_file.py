@@ -31,9 +31,10 @@ def load(path: str) -> EncodingRules:
             rules.rename = _renames(section, data['rename'])
         for key in _LISTS:
             if key in section:
-                setattr(rules, key, _patterns(section, key, data[key]))
+                setattr(rules, key, _patterns(section, key))
         if 'type_fields' in section:
-            rules.type_fields, rules.classes = _fields(section, data['type_fields'])
+            rules.type_fields, rules.classes = _fields(section.section('type_fields'),
+                                                       data['type_fields'])
         if 'mode' in section:
             rules.mode = _mode(section, data['mode'])
             _validate(section, 'mode', rules)
@@ -49,26 +50,20 @@ def values(rules: EncodingRules) -> Dict[str, Any]:
             'mode': dict(zip(('topic', 'field'), rules.mode or ()))}
 
 
-def _fields(section: Section, value: Any) -> Tuple[Dict[str, str], Classes]:
+def _fields(section: Section, value: Dict[Any, Any]) -> Tuple[Dict[str, str], Classes]:
     """Return the fields by datatype, and the classes of those that have some."""
-    if not isinstance(value, dict) or not all(
-            isinstance(datatype, str) and isinstance(of_type, (str, dict))
-            for datatype, of_type in value.items()):
-        section.fail('type_fields', 'expected datatypes, each with a field, or with a field and '
-                                    f'classes, found {shown(value)}')
     names: Dict[str, str] = {}
     classes: Classes = {}
-    with section.section('type_fields') as fields:
-        for datatype, of_type in value.items():
-            if isinstance(of_type, str):
-                names[datatype] = fields.text(datatype)
-                continue
-            with fields.section(datatype) as numeric:
-                names[datatype] = numeric.text('field')
-                number = numeric.integer('classes', FEWEST_CLASSES)
-                if number > MOST_CLASSES:
-                    numeric.fail('classes', f'expected {MOST_CLASSES} at most, found {number}')
-                classes[datatype] = (number, [])
+    for datatype, of_type in value.items():
+        if not isinstance(datatype, str):
+            section.fail(str(datatype), 'expected a datatype')
+        if not isinstance(of_type, dict):
+            names[datatype] = section.text(datatype)
+            continue
+        with section.section(datatype) as numeric:
+            names[datatype] = numeric.text('field')
+            number = numeric.integer('classes', FEWEST_CLASSES, high=MOST_CLASSES)
+            classes[datatype] = (number, [])
     return names, classes
 
 
@@ -97,13 +92,11 @@ def _renames(section: Section, value: Any) -> List[Tuple[str, str]]:
     return probe.rename
 
 
-def _patterns(section: Section, key: str, value: Any) -> Any:
-    if not isinstance(value, list) or not all(isinstance(pattern, str) for pattern in value):
-        section.fail(key, f'expected a list of regular expressions, found {shown(value)}')
+def _patterns(section: Section, key: str) -> List[str]:
     probe = EncodingRules()
-    probe.include_topics = value
+    probe.include_topics = list(section.texts(key, fewest=0))
     _validate(section, key, probe)
-    return value
+    return probe.include_topics
 
 
 def _validate(section: Section, key: str, rules: EncodingRules) -> None:

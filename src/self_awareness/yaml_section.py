@@ -1,10 +1,11 @@
 """Typed and checked access to a parsed YAML mapping; errors name the file and the key."""
 from __future__ import annotations
 
+import math
 import re
-from typing import Any, Dict, List, NoReturn, Tuple, Union
+from typing import Any, Callable, Dict, List, NoReturn, Sequence, Tuple
 
-_REQUIRED = object()
+_REQUIRED: Any = object()
 
 
 class SectionError(ValueError):
@@ -53,114 +54,100 @@ class Section:
 
     def is_number(self, key: str) -> bool:
         """Return whether the key is there and holds a number."""
-        value = self._data.get(key)
-        return isinstance(value, (int, float)) and not isinstance(value, bool)
+        return _is_number(self._data.get(key))
 
-    def number(self, key: str, low: float = float('-inf'), high: float = float('inf'),
+    def number(self, key: str, low: float = -math.inf, high: float = math.inf,
                default: Any = _REQUIRED) -> Any:
         """Return a finite number in [low, high]."""
-        if self._absent(key, default):
-            return default
-        return self._checked_number(key, self._data[key], low, high)
+        return self._get(key, default, lambda value: _is_number(value, low, high),
+                         f'a finite number{_range(low, high)}')
 
     def numbers(self, key: str, low: float) -> Tuple[float, ...]:
         """Return a list of at least one finite number, each >= low."""
-        return tuple(self._checked_number(key, value, low, float('inf'))
-                     for value in self._list(key))
+        return tuple(self._checked(key, each, lambda value: _is_number(value, low),
+                                   f'a finite number{_range(low, math.inf)}')
+                     for each in self._list(key))
 
-    def integer(self, key: str, low: int, default: Any = _REQUIRED) -> Any:
-        """Return an integer >= low."""
-        value = self.number(key, low=low, default=default)
-        if not isinstance(value, int):
-            self.fail(key, f'expected an integer, found {shown(value)}')
-        return value
+    def integer(self, key: str, low: int, default: Any = _REQUIRED,
+                high: float = math.inf) -> Any:
+        """Return an integer in [low, high]."""
+        return self._get(key, default,
+                         lambda value: isinstance(value, int) and _is_number(value, low, high),
+                         f'an integer{_range(low, high)}')
 
     def boolean(self, key: str, default: Any = _REQUIRED) -> Any:
         """Return true or false."""
-        if self._absent(key, default):
-            return default
-        if not isinstance(self._data[key], bool):
-            self.fail(key, f'expected true or false, found {shown(self._data[key])}')
-        return self._data[key]
+        return self._get(key, default, lambda value: isinstance(value, bool), 'true or false')
 
     def text(self, key: str, pattern: str = r'.+', default: Any = _REQUIRED) -> Any:
         """Return a text that matches the whole regular expression."""
-        if self._absent(key, default):
-            return default
-        value = self._data[key]
-        if not isinstance(value, str) or not re.fullmatch(pattern, value):
-            self.fail(key, f'expected a text of the form {pattern}, found {shown(value)}')
-        return value
+        return self._get(
+            key, default,
+            lambda value: isinstance(value, str) and re.fullmatch(pattern, value) is not None,
+            f'a text of the form {pattern}')
 
-    def texts(self, key: str, default: Any = _REQUIRED) -> Any:
-        """Return a list of at least one text."""
-        if self._absent(key, default):
-            return default
-        for value in self._list(key):
-            if not isinstance(value, str):
-                self.fail(key, f'expected texts, found {shown(value)}')
-        return tuple(self._data[key])
+    def texts(self, key: str, default: Sequence[str] = _REQUIRED, fewest: int = 1
+              ) -> Tuple[str, ...]:
+        """Return a list of texts, of `fewest` (0 or 1) at least."""
+        return tuple(self._checked(key, each, lambda value: isinstance(value, str), 'texts')
+                     for each in self._list(key, default, fewest))
 
     def values(self, key: str, default: Any = _REQUIRED) -> Any:
         """Return one value or a list of values as a tuple: booleans, integers or texts."""
-        if self._absent(key, default):
+        if default is not _REQUIRED and key not in self:
             return default
-        found = self._list(key) if isinstance(self._data[key], list) else [self._data[key]]
-        for value in found:
-            if not isinstance(value, (bool, int, str)):
-                self.fail(key, 'expected true, false, an integer or a text, '
-                               f'found {shown(value)}')
-        return tuple(found)
+        is_list = isinstance(self._data.get(key), list)
+        found = self._list(key) if is_list else [self._get(key, _REQUIRED, lambda _: True, '')]
+        return tuple(self._checked(key, each, lambda value: isinstance(value, (bool, int, str)),
+                                   'true, false, an integer or a text') for each in found)
 
     def texts_by_key(self, key: str) -> Dict[str, str]:
         """Return a mapping of texts to texts."""
-        value = None if self._absent(key, _REQUIRED) else self._data[key]
-        if not isinstance(value, dict) or not all(
-                isinstance(part, str) for pair in value.items() for part in pair):
-            self.fail(key, f'expected texts with texts, found {shown(value)}')
-        return dict(value)
+        return dict(self._get(key, _REQUIRED, lambda value: isinstance(value, dict) and all(
+            isinstance(part, str) for pair in value.items() for part in pair),
+            'texts with texts'))
 
     def section(self, key: str) -> Section:
         """Return the mapping under the key."""
-        self._absent(key, _REQUIRED)
-        return Section(self._data[key], self._path, self._name(key))
+        return Section(self._get(key, _REQUIRED, lambda _: True, ''), self._path, self._name(key))
 
-    def sections(self, key: str, default: Any = _REQUIRED) -> Union[Tuple[()], List[Section]]:
+    def sections(self, key: str, default: Sequence[Any] = _REQUIRED) -> List[Section]:
         """Return a list of at least one mapping."""
-        if self._absent(key, default):
-            return default
         return [Section(value, self._path, f'{self._name(key)}[{index}]')
-                for index, value in enumerate(self._list(key))]
+                for index, value in enumerate(self._list(key, default))]
 
-    def _absent(self, key: str, default: Any) -> bool:
+    def _get(self, key: str, default: Any, accepts: Callable[[Any], bool], what: str) -> Any:
+        """Return a value that is accepted, or the default where the key is absent."""
         if key in self:
-            return False
+            return self._checked(key, self._data[key], accepts, what)
         if default is _REQUIRED:
             self.fail(key, 'missing')
-        return True
+        return default
 
-    def _checked_number(self, key: str, value: Any, low: float, high: float) -> Any:
-        # Comparisons with NaN are false, so that it fails here as well.
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not (
-                low <= value <= high and abs(value) != float('inf')):
-            allowed = _range(low, high)
-            self.fail(key, f'expected a finite number{allowed}, found {shown(value)}')
+    def _checked(self, key: str, value: Any, accepts: Callable[[Any], bool], what: str) -> Any:
+        if not accepts(value):
+            self.fail(key, f'expected {what}, found {shown(value)}')
         return value
 
-    def _list(self, key: str) -> List[Any]:
-        value = None if self._absent(key, _REQUIRED) else self._data[key]
-        if not isinstance(value, list) or not value:
-            self.fail(key, f'expected a list of at least one entry, found {shown(value)}')
-        return value
+    def _list(self, key: str, default: Any = _REQUIRED, fewest: int = 1) -> Any:
+        return self._get(key, default,
+                         lambda value: isinstance(value, list) and len(value) >= fewest,
+                         f'a list{" of at least one entry" if fewest else ""}')
 
     def _name(self, key: str) -> str:
         return f'{self._where}.{key}' if self._where else key
 
 
+def _is_number(value: Any, low: float = -math.inf, high: float = math.inf) -> bool:
+    """Return whether a value is a finite number in a range; comparisons with NaN are false."""
+    return (isinstance(value, (int, float)) and not isinstance(value, bool)
+            and low <= value <= high and abs(value) != math.inf)
+
+
 def _range(low: float, high: float) -> str:
-    if low > float('-inf') and high < float('inf'):
+    if low > -math.inf and high < math.inf:
         return f' from {low:g} to {high:g}'
-    return f' of at least {low:g}' if low > float('-inf') else ''
+    return f' of at least {low:g}' if low > -math.inf else ''
 
 
 def shown(value: Any) -> str:

@@ -77,7 +77,7 @@ def test_a_field_may_have_classes(read: Callable[[str], EncodingRules]) -> None:
     ('rename: [[/a, 1]]', 'rename'),
     ('rename: [[/a, b]]', 'rename'),
     ('rename: [["/(a", /b]]', 'rename'),
-    ('type_fields: {a/B: 1}', 'type_fields'),
+    ('type_fields: {a/B: 1}', 'type_fields.a/B'),
     ('type_fields: {a/B: {field: c}}', 'type_fields.a/B.classes'),
     ('type_fields: {a/B: {classes: 4}}', 'type_fields.a/B.field'),
     ('type_fields: {a/B: {field: c, classes: 1}}', 'type_fields.a/B.classes'),

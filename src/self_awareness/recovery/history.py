@@ -128,8 +128,8 @@ def load(path: str) -> History:
         return History()
     with Section(yaml_file.load(path), path) as section:
         read = History([_action(each) for each in section.sections('actions', ())][-MOST:],
-                       Hold(_stamp(section, 'held_until', 0),
-                            _stamp(section, 'held_until_steady', 0)))
+                       Hold(section.integer('held_until', 0, 0, _MOST_STAMP),
+                            section.integer('held_until_steady', 0, 0, _MOST_STAMP)))
         same_boot = section.text('boot', '.*', '') == _boot() != ''
     if not same_boot:
         read.hold = replace(read.hold, steady=0)
@@ -152,14 +152,10 @@ def _action(section: Section) -> Action:
             incident=section.integer('incident', 0), component=section.text('component'),
             kind=section.text('kind'), step=section.integer('step', 1),
             steps=section.integer('steps', 1), action=section.text('action'),
-            begin=_stamp(section, 'begin'), steady=_stamp(section, 'steady', 0),
+            begin=section.integer('begin', 0, high=_MOST_STAMP),
+            steady=section.integer('steady', 0, 0, _MOST_STAMP),
             dry_run=section.boolean('dry_run'), over=section.boolean('over'),
             success=section.boolean('success'), result=section.text('result', '.*'))
-
-
-def _stamp(section: Section, *key_and_default: Any) -> int:
-    key, *default = key_and_default
-    return int(section.number(key, 0, _MOST_STAMP, *default))
 
 
 def _boot() -> str:

@@ -14,8 +14,6 @@ KINDS = ('silent', 'topic silent', 'unanswered', 'slow', 'fast', 'late', 'early'
          'never came', 'stale', 'lossy', 'other size', 'stuck')
 """Of incidents that blame a component of the robot, as SelfAwareness.msg has them."""
 
-MOST_RULES = 100
-MOST_STEPS = 10
 MOST_STOPPED = 5
 """Nodes that a step may stop: it mends a part of the robot."""
 
@@ -25,7 +23,6 @@ BLAME_NOBODY = ('busy machine', 'all silent', 'two senders', 'slower clock')
 _DAY_S = 86400.0
 _LONGEST_GRACE_S = 60.0
 _NAME = re.compile(r'(/[A-Za-z][A-Za-z0-9_]*)+')
-_LONGEST_NAME = 1000
 _OF_ROS = {'/rosout': "it is ROS's own", '/master': 'it is the master',
            '/roscore': 'it is the master', '/rosapi': 'others talk to the robot by it'}
 
@@ -114,26 +111,16 @@ def load(path: str, monitor: str, recovery: str) -> Rules:
             delay=section.number('delay', 0.0, _DAY_S, default.delay),
             wait=section.number('wait', 1.0, _DAY_S, default.wait),
             grace=section.number('grace', 0.1, _LONGEST_GRACE_S, default.grace),
-            limit=_limit(section, 'limit', default.limit),
-            limit_of_all=_limit(section, 'limit_of_all', default.limit_of_all),
+            limit=section.integer('limit', 1, default.limit, MOST),
+            limit_of_all=section.integer('limit_of_all', 1, default.limit_of_all, MOST),
             dry_run=section.boolean('dry_run', default.dry_run),
             rules=tuple(_rule(each, untouchable) for each in section.sections('rules')))
-        if len(read.rules) > MOST_RULES:
-            section.fail('rules', f'{len(read.rules)} of them; at most {MOST_RULES} are allowed: '
-                         'leave the least important ones to people')
         taken = Counter((rule.component, kind) for rule in read.rules for kind in rule.kinds)
         for (component, kind), number in taken.items():
             if number > 1:
                 section.fail('rules', f'two rules for {component} {kind}; give their steps in one '
                              'rule')
     return read
-
-
-def _limit(section: Section, key: str, default: int) -> int:
-    limit = section.integer(key, 1, default)
-    if limit > MOST:
-        section.fail(key, f'expected an integer from 1 to {MOST}, found {limit}')
-    return int(limit)
 
 
 def _rule(section: Section, untouchable: Mapping[str, str]) -> Rule:
@@ -147,10 +134,8 @@ def _rule(section: Section, untouchable: Mapping[str, str]) -> Rule:
             if kind not in KINDS:
                 section.fail('kinds', f'{shown(kind)} is not a kind; choose from '
                              f'{", ".join(KINDS)}')
-        steps = tuple(_step(each, untouchable) for each in section.sections('steps'))
-        if len(steps) > MOST_STEPS:
-            section.fail('steps', f'{len(steps)} of them; at most {MOST_STEPS} are allowed')
-        return Rule(component, tuple(dict.fromkeys(kinds)), steps)
+        return Rule(component, tuple(dict.fromkeys(kinds)), tuple(
+            _step(each, untouchable) for each in section.sections('steps')))
 
 
 def _step(section: Section, untouchable: Mapping[str, str]) -> Step:
@@ -177,8 +162,7 @@ def _step(section: Section, untouchable: Mapping[str, str]) -> Step:
 
 
 def _name(section: Section, key: str, name: str) -> str:
-    if '*' in name or '(' in name:
-        section.fail(key, f'{shown(name)}: patterns are not allowed; give each full name')
-    if not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
-        section.fail(key, f'{shown(name)} is no full name; it begins with /, as /player')
+    if not _NAME.fullmatch(name):
+        section.fail(key, f'{shown(name)} is no full name, as /player is, and patterns are not '
+                     'allowed')
     return name

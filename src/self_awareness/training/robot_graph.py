@@ -3,11 +3,12 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any, Dict, Iterable, Set, Tuple
+from typing import Dict, Iterable, Set, Tuple
 
 from self_awareness import (EncodingRules, FileVersion, resolved_name, unheard_publications,
                             yaml_file)
 from self_awareness.output_files import replacing
+from self_awareness.yaml_section import Section
 
 _Nodes = Dict[str, Set[str]]
 
@@ -20,8 +21,7 @@ _VERSION = 'version'
 _HOSTS = 'hosts'
 """Key of the computers of nodes; no topic is called so either."""
 
-_FIRST = {'format': 1, 'oldest_reader': 1}
-"""Of a file that does not say: release 0.1.0 wrote it."""
+_MOST_FORMAT = (1 << 32) - 1
 
 
 @dataclass
@@ -111,18 +111,16 @@ class RobotGraph:
             ValueError: it does not hold a graph, or is too new; the message names the file.
         """
         content = yaml_file.load(path)
-        if not isinstance(content, dict):
-            raise ValueError(f'{path}: expected topics, each with publishers and subscribers')
-        newer = _format(path, content.pop(_VERSION, _FIRST)) > FileVersion.of_graph().format
-        graph = cls(hosts=_hosts(path, content.pop(_HOSTS, {})))
-        for topic, nodes in content.items():
-            if newer and not str(topic).startswith('/'):
-                continue  # what this version does not know
-            publishers, subscribers = (_nodes(path, topic, nodes, key)
-                                       for key in ('publishers', 'subscribers'))
-            name = resolved_name(topic)
-            graph.publishers.setdefault(name, set()).update(publishers)
-            graph.subscribers.setdefault(name, set()).update(subscribers)
+        section = Section(content, path)
+        newer = _format(section) > FileVersion.of_graph().format
+        graph = cls(hosts=section.texts_by_key(_HOSTS) if _HOSTS in section else {})
+        for topic in content:
+            if topic in (_VERSION, _HOSTS) or newer and not str(topic).startswith('/'):
+                continue  # also what this version does not know
+            nodes = section.section(topic)
+            name = resolved_name(str(topic))
+            graph.publishers.setdefault(name, set()).update(nodes.texts('publishers', fewest=0))
+            graph.subscribers.setdefault(name, set()).update(nodes.texts('subscribers', fewest=0))
         return graph
 
 
@@ -137,33 +135,19 @@ def graph_file(bag: str) -> str:
     return f'{bag}.graph.yaml'
 
 
-def _format(path: str, version: Any) -> int:
-    """Return the format of a file by what it says of its version.
+def _format(section: Section) -> int:
+    """Return the format of a file by what it says of its version; 1: release 0.1.0 wrote it.
 
     Raises:
         ValueError: this version of the package does not understand it, or it says nothing.
     """
-    says: Dict[Any, Any] = version if isinstance(version, dict) else {}
-    number: Any = says.get('format')
-    oldest_reader: Any = says.get('oldest_reader')
-    if not all(type(each) is int and 0 < each < 1 << 32 for each in (number, oldest_reader)):
-        raise ValueError(f'{path}: expected {_VERSION} with format and oldest_reader')
-    problem = FileVersion.why_graph_too_new(number, oldest_reader, str(says.get('package')))
+    if _VERSION not in section:
+        return 1
+    version = section.section(_VERSION)
+    number, oldest_reader = (version.integer(key, 1, high=_MOST_FORMAT)
+                             for key in ('format', 'oldest_reader'))
+    problem = FileVersion.why_graph_too_new(number, oldest_reader,
+                                            version.text('package', '.*', 'None'))
     if problem:
-        raise ValueError(f'{path}: {problem}')
-    return number
-
-
-def _hosts(path: str, hosts: Any) -> Dict[str, str]:
-    if not isinstance(hosts, dict) or not all(
-            isinstance(name, str) for pair in hosts.items() for name in pair):
-        raise ValueError(f'{path}: {_HOSTS}: expected the computers of nodes')
-    return dict(hosts)
-
-
-def _nodes(path: str, topic: Any, nodes: Any, key: str) -> Set[str]:
-    names: Any = nodes.get(key) if isinstance(nodes, dict) else None
-    if not isinstance(topic, str) or not isinstance(names, list) or not all(
-            isinstance(name, str) for name in names):
-        raise ValueError(f'{path}: {topic}: expected {key} with a list of nodes')
-    return set(names)
+        section.fail(_VERSION, problem)
+    return int(number)

@@ -96,10 +96,10 @@ def test_without_a_file_there_is_no_graph(bags: Bags, tmp_path: Path, capsys) ->
 
 @pytest.mark.parametrize('text, told', [
     ('{', 'not YAML'),
-    ('- /scan', 'expected topics'),
-    ('/scan: [/laser]', '/scan: expected publishers with a list of nodes'),
-    ('/scan: {publishers: [/laser]}', '/scan: expected subscribers with a list of nodes'),
-    ('/scan: {publishers: [1], subscribers: []}', '/scan: expected publishers'),
+    ('- /scan', 'expected keys'),
+    ('/scan: [/laser]', '/scan: expected keys'),
+    ('/scan: {publishers: [/laser]}', '/scan.subscribers: missing'),
+    ('/scan: {publishers: [1], subscribers: []}', '/scan.publishers: expected texts'),
 ])
 def test_a_bad_file_is_named(bags: Bags, tmp_path: Path, capsys, text: str, told: str) -> None:
     path = graph_file(bags[0])
