@@ -293,6 +293,14 @@ def print_values(values: Any) -> None:
     print(json.dumps(values, indent=2, allow_nan=False))
 
 
+def show(as_json: bool, values: Any, lines: Iterable[str]) -> None:
+    """Print plain values as JSON, or else the same in words."""
+    if as_json:
+        print_values(values)
+    else:
+        print_lines(lines)
+
+
 def say_skipped(program: str, bad: Iterable[str]) -> None:
     """Say at the end which recordings were left out."""
     for line in bad:

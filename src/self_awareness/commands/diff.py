@@ -36,10 +36,7 @@ def _diff(arguments: argparse.Namespace) -> None:
         check_installed()
     before, after, bad = read_sides(arguments.before, arguments.after, arguments.skip_bad)
     comparison = compare(before, after)
-    if arguments.json:
-        cli.print_values(diff_text.as_values(comparison))
-    else:
-        cli.print_lines(diff_text.lines(comparison))
+    cli.show(arguments.json, diff_text.as_values(comparison), diff_text.lines(comparison))
     if arguments.html is not None:
         save_diff(arguments.html, comparison)
     cli.say_skipped('diff', bad)

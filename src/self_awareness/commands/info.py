@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from typing import Any, Dict, Optional, Sequence
+from typing import Any, Callable, Dict, Iterator, Optional, Sequence
 
 from self_awareness import ModelFileError, ResultBag, TrainedModel, recordings_in_event_log
 from self_awareness.commands import cli
@@ -25,23 +25,27 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _info(arguments: argparse.Namespace) -> None:
+    show = _what(arguments)
+    if arguments.tuning and show is not _model:
+        raise ValueError('--tuning: is for one model alone, without --age and --model')
+    show(arguments)
+
+
+def _what(arguments: argparse.Namespace) -> Callable[[argparse.Namespace], None]:
+    """Return what shows that which is named."""
     if arguments.age is not None:
-        _info_of_age(arguments)
-        return
+        return _age
     if arguments.usual is not None:
-        _info_of_rates(arguments)
-        return
+        return _rates
     first = BagPart.parse(arguments.model)
     if arguments.more or os.path.isdir(first.path) or first.last is not None:
-        _info_of_recordings(arguments)
-        return
-    recordings = recordings_in_event_log(arguments.model)
-    if recordings is not None:
-        _info_of_log(arguments, recordings)
-        return
-    if ResultBag.is_one(arguments.model):
-        _info_of_results(arguments)
-        return
+        return _recordings
+    if recordings_in_event_log(arguments.model) is not None:
+        return _log
+    return _results if ResultBag.is_one(arguments.model) else _model
+
+
+def _model(arguments: argparse.Namespace) -> None:
     model = _load(arguments.model)
     if arguments.tuning:
         cli.print_lines(tuning_lines(model.tuning))
@@ -53,47 +57,42 @@ def _info(arguments: argparse.Namespace) -> None:
                          *verdict.next_steps(model, arguments.model)])
 
 
-def _info_of_age(arguments: argparse.Namespace) -> None:
-    _refuse(arguments, 'says nothing of an age (--age)')
+def _age(arguments: argparse.Namespace) -> None:
     named = logs_of(arguments.model, arguments.age)
     found = age_of(arguments.model, _load(arguments.model), named, arguments.skip_bad)
-    if arguments.json:
-        cli.print_values(age_text.summarise(found))
-    else:
-        cli.print_lines([*named.told, *age_text.lines(found, arguments.details)])
+    cli.show(arguments.json, age_text.summarise(found),
+             [*named.told, *age_text.lines(found, arguments.details)])
     cli.say_skipped('info', named.bad)
 
 
-def _info_of_rates(arguments: argparse.Namespace) -> None:
-    _refuse(arguments, 'says nothing of rates (--model)')
+def _rates(arguments: argparse.Namespace) -> None:
     trained = TrainedModel.load(arguments.usual)
     named = look(map(BagPart.parse, [arguments.model, *arguments.more]))
     found = list(named.each(lambda part: rates_text.summarise(
         trained, cli.read_recording('info', trained, part))))
-    if arguments.json:
-        cli.print_values({'recordings': found, 'skipped': named.bad})
-    else:
-        cli.print_lines(named.told)
-        for each in found:
-            cli.print_lines(rates_text.lines(each))
+    cli.show(arguments.json, {'recordings': found, 'skipped': named.bad},
+             [*named.told, *(line for each in found for line in rates_text.lines(each))])
     cli.end_with('info', named, arguments.skip_bad)
 
 
-def _info_of_recordings(arguments: argparse.Namespace) -> None:
-    _refuse(arguments, 'is for one model, not for recordings')
+def _recordings(arguments: argparse.Namespace) -> None:
     named = look(map(BagPart.parse, [arguments.model, *arguments.more]))
     summary = recordings_text.summarise(named)
-    if arguments.json:
-        cli.print_values(summary)
-    else:
-        cli.print_lines([*named.told, *recordings_text.lines(summary)])
+    cli.show(arguments.json, summary, [*named.told, *recordings_text.lines(summary)])
     cli.end_with('info', named, arguments.skip_bad)
 
 
-def _refuse(arguments: argparse.Namespace, why: str) -> None:
-    """Refuse the option that is for models alone."""
-    if arguments.tuning:
-        raise ValueError(f'--tuning: {why}')
+def _log(arguments: argparse.Namespace) -> None:
+    summary = summarise_event_log(arguments.model)
+    cli.show(arguments.json, summary, _lines_of_log(summary, arguments.details))
+
+
+def _results(arguments: argparse.Namespace) -> None:
+    summary = summarise_results(arguments.model)
+    cli.show(arguments.json, summary, [
+        f'result bag   {summary["size"] / 1e6:.1f} MB, {summary["messages"]} messages',
+        f'written by   {describe_version(summary["version"])}',
+        f'results      {span(summary["start_ns"], summary["end_ns"])}'])
 
 
 def _load(path: str) -> TrainedModel:
@@ -109,54 +108,35 @@ def _load(path: str) -> TrainedModel:
         raise
 
 
-def _info_of_log(arguments: argparse.Namespace, recordings: int) -> None:
-    _refuse(arguments, f'is for models, and {arguments.model} is an event log')
-    summary = summarise_event_log(arguments.model, recordings)
-    if arguments.json:
-        cli.print_values(summary)
-    else:
-        _print_log(summary, arguments.details)
-
-
-def _info_of_results(arguments: argparse.Namespace) -> None:
-    summary = summarise_results(arguments.model)
-    if arguments.json:
-        cli.print_values(summary)
-        return
-    print(f'result bag   {summary["size"] / 1e6:.1f} MB, {summary["messages"]} messages')
-    print(f'written by   {describe_version(summary["version"])}')
-    print(f'results      {span(summary["start_ns"], summary["end_ns"])}')
-
-
-def _print_log(summary: Dict[str, Any], details: bool) -> None:
+def _lines_of_log(summary: Dict[str, Any], details: bool) -> Iterator[str]:
     nodes = {kind['source'] for kind in summary['event_types']} - {''}
     recordings = summary['recordings']
     dropped = sum(recording['dropped'] for recording in recordings)
-    print(f'event log    {number_of(len(recordings), "recording")}, '
-          f'{duration(summary["duration"])}, nodes: {len(nodes) or "not known"}'
-          + (f', starts of the robot: {summary["starts"]}' if summary['starts'] else '')
-          + (f'; {dropped} messages were dropped' if dropped else ''))
+    yield (f'event log    {number_of(len(recordings), "recording")}, '
+           f'{duration(summary["duration"])}, nodes: {len(nodes) or "not known"}'
+           + (f', starts of the robot: {summary["starts"]}' if summary['starts'] else '')
+           + (f'; {dropped} messages were dropped' if dropped else ''))
     if not details:
         return
-    print(f'written by   {describe_version(summary["version"])}')
+    yield f'written by   {describe_version(summary["version"])}'
     for number, recording in enumerate(recordings, 1):
         start = recording['robot_start_ns']
-        print(f'    #{number} {model_text.recording(recording)}'
-              + ('' if start is None else f', robot started {moment(start)}')
-              + (f', {recording["dropped"]} messages were dropped' if recording['dropped']
-                 else ''))
+        yield (f'    #{number} {model_text.recording(recording)}'
+               + ('' if start is None else f', robot started {moment(start)}')
+               + (f', {recording["dropped"]} messages were dropped' if recording['dropped']
+                  else ''))
     encodings = [recording['encoding'] for recording in recordings]
     for index, encoding in enumerate(encodings):
         if encoding not in encodings[:index]:
-            cli.print_lines(model_text.encoding(encoding))
-    print(f'size         {summary["size"] / 1e6:.1f} MB')
-    print(f'events       {summary["events"]}')
-    print(f'event types  {len(summary["event_types"])}')
-    print('     count  rate [Hz]')
+            yield from model_text.encoding(encoding)
+    yield f'size         {summary["size"] / 1e6:.1f} MB'
+    yield f'events       {summary["events"]}'
+    yield f'event types  {len(summary["event_types"])}'
+    yield '     count  rate [Hz]'
     for kind in summary['event_types']:
-        print(f'  {kind["count"]:8d} {or_dash(kind["rate"]):>10}  {kind["source"] or "-"} '
-              f'{kind["scope"]} {kind["type"]}')
-    print(f'graph        {model_text.graph(summary)}')
+        yield (f'  {kind["count"]:8d} {or_dash(kind["rate"]):>10}  {kind["source"] or "-"} '
+               f'{kind["scope"]} {kind["type"]}')
+    yield f'graph        {model_text.graph(summary)}'
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -11,7 +11,7 @@ from typing import Any, Dict, List, Set, Tuple
 import numpy as np
 
 from self_awareness import (METHOD, BagSummary, EncodingRules, FileVersion, encoding_file,
-                            read_events, summarise_bag)
+                            read_events, recordings_in_event_log, summarise_bag)
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training.robot_graph import RobotGraph
 
@@ -51,7 +51,7 @@ def summarise_results(path: str) -> Dict[str, Any]:
     }
 
 
-def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
+def summarise_event_log(path: str) -> Dict[str, Any]:
     """Return all of an event log but its events.
 
     Times are in seconds and rates in Hz, unless a key says otherwise. Event types are those of all
@@ -64,7 +64,7 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
     found: List[Dict[str, Any]] = []
     edges: Set[Tuple[str, str, str]] = set()
     hosts: Dict[str, str] = {}
-    for number in range(recordings):
+    for number in range(recordings_in_event_log(path) or 0):
         summary = summarise_bag(path, number)
         assert summary.encoding is not None, 'every recording of an event log has one'
         events = read_events(path, summary.encoding, recording=number)

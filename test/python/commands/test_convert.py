@@ -125,7 +125,7 @@ def test_info_says_what_is_in_a_log(log: str, capsys) -> None:
     found = json.loads(capsys.readouterr().out)
     assert [recording['robot_start_ns'] for recording in found['recordings']] == [None, None]
     assert found['recordings'][0]['encoding']['source'] == 'callerid'
-    assert 'is an event log' in error_of(info, [log, '--tuning'], capsys)
+    assert '--tuning: is for one model' in error_of(info, [log, '--tuning'], capsys)
 
 
 def test_parts_name_the_recording(log: str) -> None:

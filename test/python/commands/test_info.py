@@ -202,7 +202,7 @@ def test_rates_of_what_cannot_be_read_are_refused(model_file: str, robot_bags: A
     assert info.main([model_file, '--model', model_file]) == 1
     assert 'is a model, and no recording' in capsys.readouterr().err
     assert info.main([robot_bags[0], '--model', model_file, '--tuning']) == 1
-    assert '--tuning: says nothing of rates (--model)' in capsys.readouterr().err
+    assert '--tuning: is for one model alone' in capsys.readouterr().err
     assert info.main([robot_bags[0], '--model', robot_bags[0]]) == 1
     assert 'holds no model' in capsys.readouterr().err
     assert info.main([robot_bags[0]]) == 1

@@ -193,8 +193,3 @@ def test_nothing_to_learn_from_is_an_error(model: str, learned: Tuple[str, List[
     assert learn_more.main(['--model', model, learned[1][0], short]) == 1
     assert 'no recording is left to learn from' in capsys.readouterr().err
     assert not Path(f'{model}.new').exists()
-
-
-def test_an_age_is_neither_drawn_nor_tuned(model: str, capsys) -> None:
-    assert info.main([model, '--tuning', '--age']) == 1
-    assert '--tuning: says nothing of an age' in capsys.readouterr().err
