@@ -9,10 +9,11 @@ from typing import (Any, Callable, Dict, Iterable, Iterator, List, Mapping, Name
 
 import numpy as np
 
-from self_awareness import (LATEST_EVENT, LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules,
-                            EventType, ModelFileError, RecordedEvents, Recording, TrainedModel,
-                            Verdicts, Waiting, find_clock_steps, missing_subscriptions, progress,
-                            read_events, summarise_bag)
+from self_awareness import (LATEST_EVENT, LEAST_KNOWN, LONGEST_SILENCE, Acceptance, BagError,
+                            DetectorParameters, EncodingRules, EventType, EvidenceLanes,
+                            EvidenceModel, ModelFileError, RecordedEvents, Recording, TrainedModel,
+                            Verdicts, Waiting, evidence_lanes, find_clock_steps,
+                            missing_subscriptions, progress, read_events, summarise_bag)
 from self_awareness.output_files import MODEL, RESULT_BAG
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
@@ -132,6 +133,14 @@ class RecordingEvents:
         return judge(self.stamps, self.ids, self.end, self.event_types, monitor,
                      clock_steps=self.clock_steps, waiting=self.waiting, hosts=self.hosts,
                      missing=self.missing, attributes=self.attributes, senders=self.senders)
+
+    def lanes(self, trained: TrainedModel, computed: EvidenceModel,
+              parameters: DetectorParameters, starts: Sequence[int],
+              accepted: Sequence[Acceptance] = ()) -> EvidenceLanes:
+        """Return the evidence of each component in stretches that start at these stamps [ns]."""
+        return evidence_lanes(trained, computed, parameters, self.stamps, self.ids, self.end,
+                              self.event_types, starts, self.clock_steps, self.waiting,
+                              self.attributes, accepted)
 
     @cached_property
     def heard(self) -> np.ndarray:

@@ -22,9 +22,7 @@ class FaultResult:
     fault: str
     windows: int
     roc: Roc
-    auc_interval: Interval
     true_positive_rate: float
-    true_positive_interval: Interval
     recordings: int
     latencies: List[float]  # [s], of the recordings in which the alarm was raised
     stood_before: int  # recordings in which it stood already
@@ -86,9 +84,6 @@ def _fault_result(name: str, normal: np.ndarray, runs: Sequence[JudgedRun],
                   threshold: float) -> FaultResult:
     abnormal = labelled(runs, ABNORMAL)
     roc = Roc(normal, abnormal)
-    rate = roc.at(threshold).true_positive_rate
-    return FaultResult(
-        name, len(abnormal), roc, confidence.auc(roc.auc, len(normal), len(abnormal)), rate,
-        confidence.wilson(round(rate * len(abnormal)), len(abnormal)),
-        len(runs), [run.latency for run in runs if run.latency is not None],
-        sum(run.stood_before for run in runs))
+    return FaultResult(name, len(abnormal), roc, roc.at(threshold).true_positive_rate, len(runs),
+                       [run.latency for run in runs if run.latency is not None],
+                       sum(run.stood_before for run in runs))

@@ -8,7 +8,7 @@ section 2.3).
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 
@@ -38,7 +38,7 @@ class Run:
         fault: empty: normal operation; RECORDED, or the fault injected.
         onset: when the fault begins [ns]; not for normal operation.
         relief: when it ends [ns]; not for normal operation.
-        injected: the fault injected; None: the events are those of the source.
+        injected: the fault injected; None: it is judged as it was.
     """
 
     source: RecordingEvents
@@ -47,16 +47,19 @@ class Run:
     relief: int = 0
     injected: Optional[InjectedFault] = None
 
-    def events(self) -> Tuple[np.ndarray, np.ndarray]:
-        """Return stamps (int64 [ns]) and ids (uint32).
+    def events(self) -> RecordingEvents:
+        """Return what is judged.
 
-        Those with a fault are made here, and not kept: a fault of every source of a robot in every
-        recording would not fit into the memory.
+        With a fault, it is made here, and not kept: a fault of every source of a robot in every
+        recording would not fit into the memory. Nobody knows which attributes messages would have
+        that it makes late or seldom.
         """
         if self.injected is None:
-            return self.source.stamps, self.source.ids
-        return fault_injection.inject(self.injected, self.source.event_types, self.source.stamps,
-                                      self.source.ids, self.onset, self.source.end)
+            return self.source
+        stamps, ids = fault_injection.inject(
+            self.injected, self.source.event_types, self.source.stamps, self.source.ids,
+            self.onset, self.source.end)
+        return replace(self.source, stamps=stamps, ids=ids, attributes=None, senders=())
 
 
 @dataclass(frozen=True)
@@ -198,12 +201,7 @@ def judge_runs(judge: Judge, window: int, runs: Sequence[Run]) -> List[JudgedRun
     """Let a detector judge runs in windows of a length [ns]."""
     judged = []
     for run in progress.each(runs, 'scoring'):
-        source = run.source
-        # Nobody knows which attributes messages would have that a fault makes late or seldom.
-        verdicts = judge(*run.events(), source.end, source.event_types,
-                         clock_steps=source.clock_steps, waiting=source.waiting,
-                         hosts=source.hosts, missing=source.missing,
-                         attributes=None if run.injected else source.attributes)
+        verdicts = run.events().judged_by(judge)
         judged.append(JudgedRun(run, verdicts, np.nan_to_num(verdicts.score),
                                 _labels(run, verdicts, window)))
     return judged

@@ -6,9 +6,7 @@ import os
 import time
 from dataclasses import replace
 from statistics import median
-from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
-
-import numpy as np
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence
 
 from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, EvidenceModel,
                             PaperCalibration, PaperModel, Roc, RocPoint, TrainedModel,
@@ -22,7 +20,7 @@ from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDE
                                              recorded_fault)
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
-from self_awareness.judging import evidence_judge, load_model, paper_judge
+from self_awareness.judging import Judge, evidence_judge, load_model, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, save_table
 from self_awareness.parts import BagPart, Named, by_folder, look
 from self_awareness.recordings import RecordingEvents
@@ -104,7 +102,8 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         if arguments.details:
             cli.print_lines([
                 *heads_and_tails.lines(silences, 'BAG@START', 'BAG@0-END'),
-                *evidence_report.coverage(trained, measured.by_budget[arguments.budget]),
+                *coverage_text.lines(measured.by_budget[arguments.budget], trained.fewest_gaps),
+                *coverage_text.unheard_lines(coverage_text.unheard(trained.unheard)),
                 *evidence_report.budgets(measured.by_budget)])
         cli.print_lines([
             *evidence_report.on_normal(measured.normal, measured.false_alarms, arguments.details),
@@ -182,58 +181,48 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
         trained.calibration = calibration
         by_budget[calibration.budget] = coverage_text.summarise(trained.coverage())
     judge = evidence_judge(trained, parameters, accepted=accepted)
-    normal = judge_runs(judge, trained.window, normal_runs)
-    injected = injections(faults, trained, normal)
-    faulty = judge_runs(judge, trained.window, [*recorded, *injected.runs])
-    normal_scores = _normal_scores(normal, faulty, parameters)
-    roc = Roc(normal_scores, labelled(faulty, ABNORMAL))
-    return _Measured(roc.at(EVIDENCE_THRESHOLD), roc, normal, faulty,
-                     fault_results(normal_scores, faulty, EVIDENCE_THRESHOLD),
-                     false_alarms(normal, trained.window), by_budget, injected)
+    return _measure(judge, trained, parameters, normal_runs, recorded, faults,
+                    lambda roc: roc.at(EVIDENCE_THRESHOLD))._replace(by_budget=by_budget)
 
 
 def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutoff: ThresholdRule,
                     normal_runs: Sequence[Run], recorded: Sequence[Run],
                     faults: Sequence[InjectedFault]) -> _Measured:
     model = PaperModel(trained)
-    judge = paper_judge(trained, model, None, parameters)
-    scored = judge_runs(judge, trained.window, normal_runs)
-    injected = injections(faults, trained, scored)
-    runs = [*normal_runs, *recorded, *injected.runs]
-    scored += judge_runs(judge, trained.window, runs[len(normal_runs):])
-    normal_scores = _normal_scores(scored[:len(normal_runs)], scored[len(normal_runs):],
-                                   parameters)
-    roc = Roc(normal_scores, labelled(scored[len(normal_runs):], ABNORMAL))
-    point = cutoff.choose(roc)
-    judged = judge_runs(paper_judge(trained, model, point.cutoff, parameters),
-                        trained.window, runs)
-    normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
-    return _Measured(point, roc, normal, faulty,
-                     fault_results(normal_scores, faulty, point.cutoff),
-                     false_alarms(normal, trained.window), {}, injected)
+    # Without a threshold, there are scores only.
+    scored = _measure(paper_judge(trained, model, None, parameters), trained, parameters,
+                      normal_runs, recorded, faults, cutoff.choose)
+    judge = paper_judge(trained, model, scored.point.cutoff, parameters)
+    return _measure(judge, trained, parameters, normal_runs,
+                    [judged.run for judged in scored.faulty], (), lambda _: scored.point
+                    )._replace(roc=scored.roc, injected=scored.injected)
 
 
-def _normal_scores(normal: Sequence[JudgedRun], faulty: Sequence[JudgedRun],
-                   parameters: DetectorParameters) -> np.ndarray:
-    """Return the scores of normal windows.
+def _measure(judge: Judge, trained: TrainedModel, parameters: DetectorParameters,
+             normal_runs: Sequence[Run], recorded: Sequence[Run],
+             faults: Sequence[InjectedFault], choose: Callable[[Roc], RocPoint]) -> _Measured:
+    """Judge normal operation and faults, and choose a threshold.
 
     Raises:
-        ValueError: there is none, or none of a fault.
+        ValueError: there is no window of normal operation, or none of a fault.
     """
+    normal = judge_runs(judge, trained.window, normal_runs)
+    injected = injections(faults, trained, normal)
+    faulty = judge_runs(judge, trained.window, [*recorded, *injected.runs])
     normal_scores = labelled(normal, NORMAL)
+    settle_s = f'first {parameters.settle_time / SECOND_NS:g} s (--settle-time)'
     if len(normal_scores) == 0:
-        raise ValueError(f'--normal: no window is left after the first {_settle(parameters)} s '
-                         '(--settle-time) of the recordings; name longer ones')
+        raise ValueError(f'--normal: no window is left after the {settle_s} of the recordings; '
+                         'name longer ones')
     for run in faulty:
         if not (run.labels == ABNORMAL).any():
             raise ValueError(f'{run.run.source.part}: no window of the fault is left after the '
-                             f'first {_settle(parameters)} s (--settle-time) of the recording; '
-                             'name a longer one')
-    return normal_scores
-
-
-def _settle(parameters: DetectorParameters) -> str:
-    return f'{parameters.settle_time / SECOND_NS:g}'
+                             f'{settle_s} of the recording; name a longer one')
+    roc = Roc(normal_scores, labelled(faulty, ABNORMAL))
+    point = choose(roc)
+    return _Measured(point, roc, normal, faulty,
+                     fault_results(normal_scores, faulty, point.cutoff),
+                     false_alarms(normal, trained.window), {}, injected)
 
 
 def _calibration(arguments: argparse.Namespace, measured: _Measured) -> PaperCalibration:
@@ -258,16 +247,13 @@ def _calibration(arguments: argparse.Namespace, measured: _Measured) -> PaperCal
 def _print(cutoff: ThresholdRule, measured: _Measured) -> None:
     windows = len(labelled(measured.normal, NORMAL))
     rate = measured.point.false_positive_rate
-    false = round(rate * windows)
     for result in measured.faults:
         print(f'{result.fault}: {result.windows} abnormal windows')
-        print(f'  AUC {result.roc.auc:.4f}{_interval(result.auc_interval, ".4f")}')
-        print(f'  TPR {result.true_positive_rate:.2%}'
-              f'{_interval(result.true_positive_interval, ".2%")}')
+        print(f'  AUC {result.roc.auc:.4f}')
+        print(f'  TPR {_share(result.true_positive_rate, result.windows)}')
         print(f'  alarm {_alarms(result)}')
     print(f'normal operation: {windows} windows (recordings: {len(measured.normal)})')
-    print(f'  FPR {rate:.2%}{_interval(confidence.wilson(false, windows), ".2%")}, '
-          f'{false} windows')
+    print(f'  FPR {_share(rate, windows)}, {round(rate * windows)} windows')
     if cutoff.method == 'fpr' and cutoff.rate * windows < 1.0:
         print(f'  a false positive rate of {cutoff.rate:g} is less than one of these windows: the '
               'threshold is the lowest score seen')
@@ -288,8 +274,9 @@ def _print_false_alarms(alarms: FalseAlarms) -> None:
               f'{needed:.1f} h of normal operation without one')
 
 
-def _interval(interval: Tuple[float, float], form: str) -> str:
-    return f' (95 %: {interval[0]:{form}} to {interval[1]:{form}})'
+def _share(rate: float, windows: int) -> str:
+    low, high = confidence.wilson(round(rate * windows), windows)
+    return f'{rate:.2%} (95 %: {low:.2%} to {high:.2%})'
 
 
 def _alarms(result: FaultResult) -> str:
@@ -342,5 +329,5 @@ def _parser() -> argparse.ArgumentParser:
     group.add_argument('--roc', type=cli.plot_file, metavar='FILE',
                        help='draw the ROC; the name ends in .png, .pdf or .svg')
     group.add_argument('--csv', metavar='FILE', help='write score and label of every window')
-    cli.add_detector_arguments(group)
+    cli.add_settle_time(group)
     return parser

@@ -28,7 +28,7 @@ _INTERRUPTED = 130
 _LONGEST_S = 86400.0
 _UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
             'error': UnknownEvents.ERROR}
-_MOST_WINDOWS = 100_000
+_MOST = 10_000
 
 
 class _Parser(argparse.ArgumentParser):
@@ -186,10 +186,10 @@ def offset(text: str) -> float:
     return float(text)
 
 
-def count(text: str, most: int = 10_000) -> int:
+def count(text: str) -> int:
     """Argument type: how many of something, 1 or more."""
-    if not text.isdecimal() or not 1 <= int(text) <= most:
-        raise argparse.ArgumentTypeError(f'expected a number from 1 to {most}, not {text!r}')
+    if not text.isdecimal() or not 1 <= int(text) <= _MOST:
+        raise argparse.ArgumentTypeError(f'expected a number from 1 to {_MOST}, not {text!r}')
     return int(text)
 
 
@@ -342,40 +342,20 @@ def add_unknown(parser: argparse.ArgumentParser) -> None:
                              'once (default: warn)')
 
 
-def add_detector_arguments(group: argparse._ActionsContainer) -> None:
-    """Add the options that say when abnormal windows are an alarm; see add_unknown()."""
-    default = DetectorParameters()
-    group.add_argument('--settle-time', type=seconds, default=default.settle_time, metavar='S',
+def add_settle_time(group: argparse._ActionsContainer) -> None:
+    """Add the option that says when a recording is judged."""
+    default = DetectorParameters().settle_time
+    group.add_argument('--settle-time', type=seconds, default=default, metavar='S',
                        help='no alarm in the first seconds of a recording '
-                            f'(default: {default.settle_time / SECOND_NS:g})')
-    group.add_argument('--alarm-windows', type=_windows, default=default.alarm_windows,
-                       metavar='K', help='abnormal windows that raise the alarm '
-                       f'(default: {default.alarm_windows})')
-    group.add_argument('--alarm-of', type=_windows, default=default.alarm_of, metavar='N',
-                       help=f'among the last N windows (default: {default.alarm_of})')
-    group.add_argument('--hold-time', type=seconds, default=default.hold_time, metavar='S',
-                       help='seconds without an abnormal window after which the alarm ends '
-                            f'(default: {default.hold_time / SECOND_NS:g})')
+                            f'(default: {default / SECOND_NS:g})')
 
 
 def detector_parameters(arguments: argparse.Namespace) -> DetectorParameters:
-    """Return the parameters of the options that add_detector_arguments() and add_unknown() added.
-
-    Raises:
-        ValueError: more windows are wanted for an alarm than are looked at.
-    """
+    """Return the parameters of the options that add_settle_time() and add_unknown() added."""
     parameters = DetectorParameters()
     parameters.settle_time = arguments.settle_time
-    parameters.alarm_windows = arguments.alarm_windows
-    parameters.alarm_of = arguments.alarm_of
-    parameters.hold_time = arguments.hold_time
     parameters.unknown = _UNKNOWN[arguments.unknown]
-    parameters.validate()
     return parameters
-
-
-def _windows(text: str) -> int:
-    return count(text, _MOST_WINDOWS)
 
 
 def _fail(program: str, text: str) -> int:

@@ -18,15 +18,13 @@ from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUE
 from self_awareness.parts import BagPart, look
 from self_awareness.recordings import in_words, unknown
 from self_awareness.reporting import coverage_text
-from self_awareness.reporting.plots import ScorePlot, save_scores
-from self_awareness.reporting.report import neighbours
+from self_awareness.reporting.plots import save_scores
 from self_awareness.reporting.report.incidents import (Incident, as_values, incidents,
                                                        place_of)
 from self_awareness.reporting.report.intervals import SUSPICION, intervals
 from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import check_installed, save_report
 from self_awareness.reporting.report.section import section
-from self_awareness.reporting.report.timeline import timeline
 from self_awareness.reporting.text import cell, duration, first_lines, number_of, seconds_of
 from self_awareness.results import check_apart, result_bag
 from self_awareness.stamps import SECOND_NS, span
@@ -75,8 +73,7 @@ def _score(arguments: argparse.Namespace) -> int:
                    (arguments.report, PAGE), (arguments.result_bag, RESULT_BAG)],
                   [file for part in named.parts for file in part.files] + [arguments.model])
     if arguments.report is not None:
-        check_installed()
-        neighbours.check_installed()
+        check_installed(graphs=True)
     check_apart(arguments.result_bag, named.parts)
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
@@ -119,7 +116,7 @@ def _score(arguments: argparse.Namespace) -> int:
     if arguments.json is not None:
         _save_json(arguments.json, judged, missing, named.bad)
     if arguments.plot is not None:
-        save_scores(arguments.plot, [_plot(each) for each in judged])
+        save_scores(arguments.plot, judged)
     if arguments.report is not None:
         save_report(arguments.report, [section(each, f'recording-{number}')
                                        for number, each in enumerate(judged, 1)])
@@ -231,14 +228,6 @@ def _rows(judged: Sequence[Judged], threshold: Optional[float]) -> Iterator[Sequ
                        limit, int(abnormal))
 
 
-def _plot(judged: Judged) -> ScorePlot:
-    named = [(judged.seconds(alarm.begin), judged.seconds(alarm.end),
-              alarm.suspects[0].component if alarm.suspects else '')
-             for alarm in judged.verdicts.alarms]
-    return ScorePlot(f'{judged.recording.part}: score of windows of '
-                     f'{judged.by.trained.window / SECOND_NS:g} s', timeline(judged), named)
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = cli.parser('score', __doc__, _EPILOG)
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
@@ -263,5 +252,5 @@ def _parser() -> argparse.ArgumentParser:
     group = cli.for_researchers(parser)
     cli.add_detector_argument(group)
     group.add_argument('--csv', metavar='FILE', help='write the score of every window')
-    cli.add_detector_arguments(group)
+    cli.add_settle_time(group)
     return parser

@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from typing import Dict, List, Sequence
 
 from self_awareness import (Acceptance, ComponentDrift, DetectorParameters, EvidenceModel,
-                            Recording, TrainedModel, accepted_file, drift_of, evidence_lanes,
-                            recordings)
+                            Recording, TrainedModel, accepted_file, drift_of, recordings)
 from self_awareness.judging import evidence_judge
 from self_awareness.parts import BagPart, Named, look
 from self_awareness.recordings import DistinctRecordings, overlap
@@ -158,9 +157,6 @@ def _heard(trained: TrainedModel, computed: EvidenceModel, accepted: Sequence[Ac
     if alarms:
         return left_out(INCIDENT, f'{alarms[0].kind} {alarms[0].culprit}'.strip())
     # The largest shares once the detector has settled.
-    lanes = evidence_lanes(trained, computed, parameters, events.stamps, events.ids, events.end,
-                           list(events.event_types), [first + parameters.settle_time],
-                           list(events.clock_steps), list(events.waiting), events.attributes,
-                           list(accepted))
+    lanes = events.lanes(trained, computed, parameters, [first + parameters.settle_time], accepted)
     return Heard(part, recording, events.origin,
                  shares=dict(zip(lanes.components, lanes.shares[:, 0].tolist())))

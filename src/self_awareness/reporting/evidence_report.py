@@ -5,23 +5,15 @@ import math
 from statistics import median
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
-from self_awareness import TrainedModel
 from self_awareness.calibration import confidence, heads_and_tails
 from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, Injections, JudgedRun
-from self_awareness.reporting import coverage_text
 from self_awareness.reporting.text import aligned, duration, first_lines
 from self_awareness.stamps import SECOND_NS
 
 _DIFFERENT = 0.8
 _MOST_ROWS = 10
 _COLUMNS = ('fault', 'node', 'found', 'after', 'named first', 'among three')
-
-
-def coverage(trained: TrainedModel, found: Sequence[Dict[str, Any]]) -> List[str]:
-    """Return a table of all components."""
-    return (coverage_text.lines(found, trained.fewest_gaps)
-            + coverage_text.unheard_lines(coverage_text.unheard(trained.unheard)))
 
 
 def budgets(by_budget: Mapping[float, Sequence[Dict[str, Any]]]) -> List[str]:

@@ -4,14 +4,16 @@ matplotlib takes long to import: only a program that draws imports it.
 """
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, List, NamedTuple, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Optional, Sequence, Tuple
 
 import numpy as np
 
 from self_awareness import Roc, RocPoint
 from self_awareness.output_files import replacing
-from self_awareness.reporting.report.timeline import SHOWN_LIMITS, Timeline
+from self_awareness.reporting.report.judged import Judged
+from self_awareness.reporting.report.timeline import SHOWN_LIMITS, timeline
 from self_awareness.reporting.text import percent
+from self_awareness.stamps import SECOND_NS
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,21 +25,7 @@ _LEFT_EDGE = 0.05
 _RED, _GREY = '#c62f35', '#7d8694'
 
 
-class ScorePlot(NamedTuple):
-    """What is drawn of one recording; times in seconds from its first message.
-
-    Args:
-        title: above the plot.
-        timeline: the score.
-        alarms: stretches in which the alarm stood, and whom it names first; empty: nobody.
-    """
-
-    title: str
-    timeline: Timeline
-    alarms: List[Tuple[float, float, str]]
-
-
-def save_scores(path: str, plots: Sequence[ScorePlot]) -> None:
+def save_scores(path: str, recordings: Sequence[Judged]) -> None:
     """Draw the scores of recordings over time, one below the other.
 
     Raises:
@@ -45,9 +33,10 @@ def save_scores(path: str, plots: Sequence[ScorePlot]) -> None:
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(12, 0.6 + 3.6 * len(plots)), dpi=_DPI, constrained_layout=True)
-    for axes, plot in zip(figure.subplots(len(plots), squeeze=False)[:, 0], plots):
-        _draw_scores(axes, plot)
+    number = len(recordings)
+    figure = Figure(figsize=(12, 0.6 + 3.6 * number), dpi=_DPI, constrained_layout=True)
+    for axes, judged in zip(figure.subplots(number, squeeze=False)[:, 0], recordings):
+        _draw_scores(axes, judged)
     _save(path, figure)
 
 
@@ -104,60 +93,40 @@ def _draw_roc(axes: Axes, roc: Roc, colour: Optional[str], width: float,
               color=colour, linewidth=width, label=label and _plain(label))
 
 
-def _draw_scores(axes: Axes, plot: ScorePlot) -> None:
-    shown, limit = plot.timeline, plot.timeline.limit
-    times, lowest, highest = shown.edges[:-1], shown.lowest, shown.highest
-    if limit is not None and limit < 0:
-        lowest, highest = (np.maximum(each, -SHOWN_LIMITS) for each in (lowest, highest))
-    _shade(axes, shown.settling, 'settling: no alarm yet', color='0.9')
-    _shade(axes, [(start, end) for start, end, _ in plot.alarms], 'alarm', color='tab:red',
-           alpha=0.22)
-    axes.fill_between(times, lowest, highest, color=_GREY, alpha=0.3, linewidth=0)
-    axes.plot(times, lowest, color=_GREY, linewidth=0.7,
-              label='score' if (np.nan_to_num(lowest) == np.nan_to_num(highest)).all()
-              else 'lowest score of each stretch')
-    if shown.silent.any() and limit is not None:
-        axes.plot(times[shown.silent], np.zeros(shown.silent.sum()), '|', color='tab:purple',
-                  markersize=8, label='no event in the window')
-    if shown.abnormal.any():
-        axes.plot(times[shown.abnormal], np.nan_to_num(lowest[shown.abnormal]), '.', color=_RED,
-                  markersize=3, label='abnormal window')
-    axes.set(title=_plain(plot.title), xlabel='time from the first message [s]',
-             ylabel='score' if limit is None else
-             'of the limit\n(beyond 100 % is abnormal)' if limit < 0 else
-             f'score in units of the limit\n(below {limit:g} is abnormal)')
-    axes.margins(x=0.005)
+def _draw_scores(axes: Axes, judged: Judged) -> None:
+    shown, alarms = timeline(judged), judged.verdicts.alarms
+    limit = shown.limit
+    of_evidence = limit is not None and limit < 0
+    lowest = np.nan_to_num(shown.lowest)
+    if of_evidence:
+        lowest = np.maximum(lowest, -SHOWN_LIMITS)
+    for label, colour, stretches in (
+            ('settling: no alarm yet', '0.9', shown.settling),
+            ('alarm', '#f6cfd0', [(judged.seconds(alarm.begin), judged.seconds(alarm.end))
+                                  for alarm in alarms])):
+        for index, (start, end) in enumerate(stretches):
+            axes.axvspan(start, end, linewidth=0, color=colour,
+                         label=label if index == 0 else None)
+    axes.plot(shown.edges[:-1], lowest, color=_GREY, linewidth=0.7, label='lowest score')
+    axes.plot(shown.edges[:-1][shown.abnormal], lowest[shown.abnormal], '.', color=_RED,
+              markersize=3, label='abnormal window')
     if limit is not None:
         axes.axhline(limit, color=_RED, linestyle='--', linewidth=1.3,
-                     label='limit' if limit < 0 else f'threshold s* = {limit * shown.unit:.4g}')
-    if limit is not None and limit < 0:
-        low = float(np.nanmin(lowest)) if np.isfinite(lowest).any() else limit
-        axes.set_ylim(1.05 * min(1.5 * limit, low), 0.05)
+                     label='limit' if of_evidence else f'threshold s* = {limit * shown.unit:.4g}')
+    if limit is not None and of_evidence:
+        axes.set_ylim(1.05 * min(1.5 * limit, float(lowest.min())), 0.05)
         axes.yaxis.set_major_formatter(lambda score, _: percent(abs(score)))
-    else:
-        axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
-    _name(axes, plot.alarms)
+    title = (f'{judged.recording.part}: score of windows of '
+             f'{judged.by.trained.window / SECOND_NS:g} s')
+    axes.set(title=_plain(title), xlabel='time from the first message [s]',
+             ylabel='of the limit' if of_evidence else 'score' if limit is None else
+             'score in units of the threshold')
+    for alarm in alarms:
+        axes.annotate(_plain(alarm.culprit), (judged.seconds(alarm.begin), 1), xytext=(3, -3),
+                      xycoords=('data', 'axes fraction'), textcoords='offset points', color=_RED,
+                      fontsize='small', va='top', clip_on=True)
     axes.grid(alpha=0.3)
     axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0), frameon=False)
-
-
-def _name(axes: Axes, alarms: Sequence[Tuple[float, float, str]]) -> None:
-    """Write whom the alarms name, where there is room for it."""
-    left, right = axes.get_xlim()
-    room = left
-    for start, _, suspect in alarms:
-        if suspect and start >= room:
-            axes.annotate(suspect, (start, 1), xytext=(3, -3), xycoords=('data', 'axes fraction'),
-                          textcoords='offset points', color=_RED, fontsize='small', va='top',
-                          clip_on=True)
-            # About as wide as a character is in this figure.
-            room = start + (right - left) * 0.009 * (len(suspect) + 1)
-
-
-def _shade(axes: Axes, stretches: Sequence[Tuple[float, float]], label: str,
-           **style: object) -> None:
-    for index, (start, end) in enumerate(stretches):
-        axes.axvspan(start, end, linewidth=0, label=label if index == 0 else None, **style)
 
 
 def _save(path: str, figure: Figure) -> None:

@@ -63,7 +63,7 @@ def test_help(program: str, monkeypatch) -> None:
     assert program in OF_DEVELOPERS or JARGON.findall(text) == []
 
 
-JUDGING = ('--detector', '--csv', '--settle-time', '--alarm-windows', '--alarm-of', '--hold-time')
+JUDGING = ('--detector', '--csv', '--settle-time')
 
 
 @pytest.mark.parametrize('program, options', [

@@ -194,17 +194,9 @@ def test_a_name_that_a_spreadsheet_would_compute_is_a_text(model: str, robot_bag
             assert {row['bag'] for row in rows_of(table)} == {f"'{name}"}
 
 
-def test_the_options_of_the_alarm_are_heard(model: str, dead_laser: str, capsys) -> None:
-    def times(*options: str) -> List[Tuple[float, float]]:
-        assert score.main([dead_laser, '--model', model, *PAPER, *options]) == 0
-        return alarms(capsys.readouterr().out)
-
-    usual = times()
-    assert len(usual) == 1
-    assert times('--settle-time', '25') == []
-    late = times('--alarm-windows', '30', '--alarm-of', '30')
-    assert not late or late[0][0] > usual[0][0] + 1.0
-    assert times('--hold-time', '4')[0][1] == pytest.approx(usual[0][1] + 2.0, abs=0.11)
+def test_nothing_is_judged_before_it_has_settled(model: str, dead_laser: str, capsys) -> None:
+    assert score.main([dead_laser, '--model', model, *PAPER, '--settle-time', '25']) == 0
+    assert alarms(capsys.readouterr().out) == []
 
 
 def test_a_model_without_limits_scores_nothing_abnormal_and_says_so(

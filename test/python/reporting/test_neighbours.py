@@ -6,8 +6,9 @@ import xml.etree.ElementTree as ElementTree
 
 import pytest
 
-from self_awareness.reporting.report.neighbours import (MOST_NODES, OTHER, ROOT, VICTIM,
-                                                        check_installed, draw, neighbourhood)
+from self_awareness.reporting.report.neighbours import (MOST_NODES, OTHER, ROOT, VICTIM, draw,
+                                                        neighbourhood)
+from self_awareness.reporting.report.page import check_installed
 
 
 def test_the_root_has_its_publishers_and_subscribers() -> None:
@@ -78,4 +79,4 @@ def test_a_phone_shows_it_whole(edges: 'list[tuple[str, str, str]]') -> None:
 def test_without_dot_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv('PATH', '/nowhere')
     with pytest.raises(ValueError, match='apt install graphviz'):
-        check_installed()
+        check_installed(graphs=True)

@@ -9,24 +9,26 @@ import numpy as np
 import pytest
 
 from self_awareness import Roc
-from self_awareness.reporting.plots import ScorePlot, save_roc, save_scores
-from self_awareness.reporting.report.timeline import timeline
+from self_awareness.reporting.plots import save_roc, save_scores
+from self_awareness.reporting.report.judged import Judged
 
 STARTS = {'png': b'\x89PNG', 'pdf': b'%PDF', 'svg': b'<?xml'}
 
 
-def scores(windows: int, lowest: float = -2.0, threshold: Optional[float] = -1.0) -> ScorePlot:
+def scores(windows: int, lowest: float = -2.0, threshold: Optional[float] = -1.0,
+           name: str = 'robot.bag') -> Judged:
     values = np.full(windows, -0.3)
     values[windows // 2] = lowest
     values[:3] = np.nan
-    verdicts = SimpleNamespace(start=np.arange(windows) * 10 ** 8, score=values,
-                               abnormal=values < -1.0, settling=np.arange(windows) < 50,
-                               alarms=[], suspicions=[])
-    judged: Any = SimpleNamespace(
-        verdicts=verdicts, recording=SimpleNamespace(origin=0), by=SimpleNamespace(
-            threshold=threshold, evidence='of it',
-            trained=SimpleNamespace(window=10 ** 8, event_types=['a', 'b'])))
-    return ScorePlot('robot.bag', timeline(judged), [(0.05 * windows, 0.06 * windows, '/player')])
+    alarm = SimpleNamespace(begin=windows * 5 * 10 ** 6, end=windows * 6 * 10 ** 6,
+                            culprit='/player')
+    verdicts: Any = SimpleNamespace(start=np.arange(windows) * 10 ** 8, score=values,
+                                    abnormal=values < -1.0, settling=np.arange(windows) < 50,
+                                    alarms=[alarm], suspicions=[])
+    by: Any = SimpleNamespace(threshold=threshold, evidence='of it',
+                              trained=SimpleNamespace(window=10 ** 8))
+    recording: Any = SimpleNamespace(origin=0, part=name)
+    return Judged(by, recording, verdicts)
 
 
 @pytest.mark.parametrize('ending', sorted(STARTS))
@@ -47,7 +49,7 @@ def test_a_plot_names_the_alarm_and_the_few_worst_faults(tmp_path: Path) -> None
     curves = [(f'fault$x^{{{number}', roc) for number, roc in enumerate(rocs)]
     title = r'$HOME/a_$x^{robot.bag'  # with dollars, and no formula
     with rc_context({'svg.fonttype': 'none'}):  # text as text
-        save_scores(str(tmp_path / 's.svg'), [scores(600)._replace(title=title)])
+        save_scores(str(tmp_path / 's.svg'), [scores(600, name=title)])
         save_roc(str(tmp_path / 'r.svg'), title, [*curves, ('all together', rocs[4])],
                  rocs[4].at(-1.0))
     plot, legend = ((tmp_path / name).read_text(encoding='utf-8') for name in ('s.svg', 'r.svg'))

@@ -8,7 +8,7 @@ from typing import Dict, Optional, Tuple
 import numpy as np
 
 from self_awareness import (DetectorParameters, EvidenceLanes, EvidenceModel, TrainedModel,
-                            Verdicts, evidence_lanes)
+                            Verdicts)
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
@@ -65,9 +65,5 @@ class Judged:
         """
         if self.by.evidence is None or self.by.threshold is None:
             return None
-        recording = self.recording
-        return evidence_lanes(self.by.trained, self.by.evidence, self.by.parameters,
-                              recording.stamps, recording.ids, recording.end,
-                              list(recording.event_types), starts.tolist(),
-                              recording.clock_steps, list(recording.waiting),
-                              recording.attributes)
+        return self.recording.lanes(self.by.trained, self.by.evidence, self.by.parameters,
+                                    starts.tolist())

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import re
-import shutil
 import subprocess
 from collections import Counter, defaultdict, deque
 from dataclasses import dataclass
@@ -42,16 +41,6 @@ class Neighbourhood:
     topics: Dict[Tuple[str, str], List[str]]
     left_out: int
     listeners: List[str]
-
-
-def check_installed() -> None:
-    """Check before long work that graphs can be drawn.
-
-    Raises:
-        ValueError: dot is missing.
-    """
-    if shutil.which('dot') is None:
-        raise ValueError('a report needs dot, which is not installed: apt install graphviz')
 
 
 def neighbourhood(edges: Iterable[Edge], suspects: Sequence[str]) -> Neighbourhood:

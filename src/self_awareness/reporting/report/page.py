@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import base64
 import importlib.util
+import shutil
 import zlib
 from typing import Any, Dict, Optional, Sequence
 
@@ -16,15 +17,17 @@ from self_awareness.reporting.report.templates import template
 _WITHOUT_EVAL = 5  # the first version of plotly whose plotly.js calls no eval()
 
 
-def check_installed() -> None:
-    """Check before long work that a page can be made.
+def check_installed(graphs: bool = False) -> None:
+    """Check before long work that a page can be made, with graphs if they are wanted.
 
     Raises:
-        ValueError: plotly is missing; rosdep does not know it.
+        ValueError: plotly is missing, which rosdep does not know, or dot.
     """
     if importlib.util.find_spec('plotly') is None:
         raise ValueError('a page needs plotly, which is not installed: apt install '
                          'python3-plotly')
+    if graphs and shutil.which('dot') is None:
+        raise ValueError('a report needs dot, which is not installed: apt install graphviz')
 
 
 def save_report(path: str, sections: Sequence[Section]) -> None:

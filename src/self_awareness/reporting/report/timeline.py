@@ -19,8 +19,6 @@ MOST_LONG = 1000
 """Stretches of the whole recording, at most about so many."""
 MOST_FINE = 1500
 """Windows that are stretches of their own, at most so many."""
-MOST_CELLS = 20_000_000
-"""Stretches times components, at most so many: they are kept in memory."""
 SHOWN_LIMITS = 4.0
 """Scores beyond so many limits are drawn at the edge; those within the limits are not drawn."""
 
@@ -56,7 +54,6 @@ class Timeline:
         lowest: score of each stretch, in units of the threshold's size; NaN: none.
         highest: likewise.
         abnormal: whether a window of it is.
-        silent: whether a window of it has no score, as the paper's detector has none of silence.
         unit: the threshold's size; 1: not calibrated.
         limit: the threshold in this unit: -1 of evidence, 1 of the paper's; None: not calibrated.
         settling: start and end [s] of the times in which no alarm is raised.
@@ -67,7 +64,6 @@ class Timeline:
     lowest: np.ndarray
     highest: np.ndarray
     abnormal: np.ndarray
-    silent: np.ndarray
     unit: float
     limit: Optional[float]
     settling: List[Tuple[float, float]]
@@ -81,14 +77,9 @@ def cut(judged: Judged) -> np.ndarray:
     """
     verdicts = judged.verdicts
     windows = len(verdicts.start)
-    # There are no more components than event types.
-    components = max(len(judged.by.trained.event_types), 1)
-    most = max(1, min(MOST_LONG + MOST_FINE, MOST_CELLS // components))
-    long = min(MOST_LONG, most)
-    step = -(-windows // long)
     first = np.zeros(windows, dtype=bool)
-    first[::step] = True
-    room = most - int(first.sum())
+    first[::-(-windows // MOST_LONG)] = True
+    room = MOST_LONG + MOST_FINE - int(first.sum())
     starts = np.array([each.begin for each in [*verdicts.alarms, *verdicts.suspicions]],
                       dtype=np.int64)
     near = (np.searchsorted(verdicts.start, starts + around) for around in (-_BEFORE, _AFTER))
@@ -135,7 +126,6 @@ def timeline(judged: Judged, first: Optional[Sequence[str]] = None) -> Timeline:
         lowest=np.fmin.reduceat(scores, begins),
         highest=np.fmax.reduceat(scores, begins),
         abnormal=np.logical_or.reduceat(verdicts.abnormal, begins),
-        silent=np.logical_or.reduceat(np.isnan(verdicts.score), begins),
         unit=unit,
         limit=None if threshold is None else threshold / unit,
         settling=[(float(starts[a]), float(starts[b])) for a, b in steps.reshape(-1, 2)],
