@@ -64,9 +64,8 @@ void bindAccepted(py::module& m) {
            py::arg("kind") = "", py::arg("at") = 0, py::arg("by") = "",
            py::arg("together") = std::vector<std::string>(),
            "component, topic: a name, or its begin and a *; empty: all. kind: as Alarm.kind;\n"
-           "empty: all that it does. at: [ns]. together: of the kind new mode, the components "
-           "that\n"
-           "are off. ValueError: there is no such kind, or no such mode.")
+           "empty: all that it does. at: [ns]. together: of the kind new mode, the components\n"
+           "that are off. ValueError: there is no such kind, or no such mode.")
       .def_readonly("component", &Acceptance::component)
       .def_readonly("topic", &Acceptance::topic)
       .def_property_readonly("kind",

@@ -186,38 +186,25 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
   detector.finish();
 }
 
-/// Binds files that are written whole or not at all (output_file_bindings.cpp).
-void bindOutputFiles(py::module& module);
-/// Binds the writing of event logs (event_log_bindings.cpp).
-void bindEventLogs(py::module& module);
-/// Binds event types, and how messages become events (encoding_bindings.cpp).
-void bindEncoding(py::module& module);
-/// Binds the reading of bags and event logs (recording_bindings.cpp).
-void bindRecordings(py::module& module);
-/// Binds what files say of their versions (file_version_bindings.cpp).
-void bindFileVersions(py::module& module);
-/// Binds model files (model_bindings.cpp).
-void bindModel(py::module& module);
-/// Binds the numbers of the method (tuning_bindings.cpp).
-void bindTuning(py::module& module);
-/// Binds alarms and their suspects (alarm_bindings.cpp).
-void bindAlarms(py::module& module);
-void bindIncidents(py::module& module);
-/// Binds what is accepted as normal, and its file (accepted_bindings.cpp).
-void bindAccepted(py::module& module);
 /// @throw std::invalid_argument if there are too many
 core::Acceptances acceptancesOf(const std::vector<core::Acceptance>& list);
-/// Binds the learning of models, and of their limits (learn_bindings.cpp).
-void bindLearning(py::module& module);
-/// Binds evidence and its limits (evidence_bindings.cpp).
-void bindEvidence(py::module& module);
-/// Binds the evidence of components over time (lanes_bindings.cpp).
-void bindLanes(py::module& module);
-/// Binds the test for drift (drift_bindings.cpp).
-void bindDrift(py::module& module);
-/// Binds result bags (result_bindings.cpp).
-void bindResults(py::module& module);
-/// Binds model, scores, verdicts and ROC (detector_bindings.cpp).
+
+// What each file beside this one binds.
+void bindAccepted(py::module& module);
+void bindAlarms(py::module& module);
 void bindDetector(py::module& module);
+void bindDrift(py::module& module);
+void bindEncoding(py::module& module);
+void bindEventLogs(py::module& module);
+void bindEvidence(py::module& module);
+void bindFileVersions(py::module& module);
+void bindIncidents(py::module& module);
+void bindLanes(py::module& module);
+void bindLearning(py::module& module);
+void bindModel(py::module& module);
+void bindOutputFiles(py::module& module);
+void bindRecordings(py::module& module);
+void bindResults(py::module& module);
+void bindTuning(py::module& module);
 
 }  // namespace self_awareness::python

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "bindings.h"
-#include "core/paper/scorer.h"
 #include "ros/verdict/replayed_monitor.h"
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/paper/judge.h"
@@ -121,15 +120,6 @@ Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                monitor, std::move(clock_steps), waiting, missing, attributes, senders);
 }
 
-std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model,
-                                const Stamps& stamps, const Ids& ids) {
-  core::paper::Scorer scorer(model);
-  std::vector<double> scores;
-  forEachEvent(stamps, ids,
-               [&](const core::Event& event) { scores.push_back(scorer.score(event).score); });
-  return scores;
-}
-
 void bindVerdicts(py::module& m) {
   py::enum_<core::UnknownEvents>(m, "UnknownEvents",
                                  "What an unknown event means: nothing, a suspicion, or an alarm.")
@@ -140,20 +130,8 @@ void bindVerdicts(py::module& m) {
   using core::Detector;
   py::class_<Detector::Parameters>(m, "DetectorParameters")
       .def(py::init<>())
-      .def_property(
-          "alarm_windows",
-          [](const Detector::Parameters& self) { return self.persistence.alarm_windows; },
-          [](Detector::Parameters& self, int k) { self.persistence.alarm_windows = k; })
-      .def_property(
-          "alarm_of", [](const Detector::Parameters& self) { return self.persistence.alarm_of; },
-          [](Detector::Parameters& self, int n) { self.persistence.alarm_of = n; })
-      .def_property(
-          "hold_time", [](const Detector::Parameters& self) { return self.persistence.hold_time; },
-          [](Detector::Parameters& self, std::int64_t ns) { self.persistence.hold_time = ns; },
-          "[ns]")
       .def_readwrite("settle_time", &Detector::Parameters::settle_time, "[ns]")
-      .def_readwrite("unknown", &Detector::Parameters::unknown)
-      .def("validate", &Detector::Parameters::validate);
+      .def_readwrite("unknown", &Detector::Parameters::unknown);
 
   py::class_<core::Persistence>(
       m, "Persistence", "Decides when abnormal windows are an alarm, as the detector does.")
@@ -194,26 +172,8 @@ void bindVerdicts(py::module& m) {
              return std::make_shared<core::paper::Model>(trained.statistics);
            }),
            py::arg("trained"))
-      .def_property_readonly(
-          "entropies",
-          [](const core::paper::Model& self) {
-            py::array_t<double> array({self.size(), self.size()});
-            auto values = array.mutable_unchecked<2>();
-            for (core::EventId from = 0; from < self.size(); ++from) {
-              for (core::EventId to = 0; to < self.size(); ++to) {
-                values(from, to) = self.entropy(from, to);
-              }
-            }
-            return array;
-          },
-          "h_ij [bit], [from, to]")
       .def("weight", &core::paper::Model::weight, py::arg("from_id"), py::arg("to_id"),
            "w_ij once all event types were seen")
-      .def(
-          "score_events",
-          [](const std::shared_ptr<core::paper::Model>& self, const Stamps& stamps,
-             const Ids& ids) { return toArray(scoreEvents(self, stamps, ids)); },
-          py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
       .def("judge", &judgeByPaper, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
            py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
            py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,

@@ -39,13 +39,11 @@ void bindDrift(py::module& m) {
         return samples.drift();
       },
       py::arg("components"), py::arg("normal"),
-      "The Drift that times say which were normal, in their order: of each (begin [ns], end "
-      "[ns],\n"
-      "robot_start, shares). robot_start: the same for all of a start of the robot; 0: not "
-      "known,\n"
-      "then a start ends with a pause of more than a minute. shares: the largest share of its\n"
-      "limit, of each component. A sample is all of a start of the robot, or of a day of one.\n"
-      "ValueError if the number of shares is another one, or one is not finite or below 0.");
+      "The Drift that times say which were normal, in their order: of each (begin [ns], end\n"
+      "[ns], robot_start, shares). robot_start: the same for all of a start of the robot; 0: not\n"
+      "known, then a start ends with a pause of more than a minute. shares: the largest share of\n"
+      "its limit, of each component. A sample is all of a start of the robot, or of a day of\n"
+      "one. ValueError if the number of shares is another one, or one is not finite or below 0.");
 }
 
 }  // namespace self_awareness::python

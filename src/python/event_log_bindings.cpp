@@ -58,9 +58,8 @@ void bindEventLogs(py::module& m) {
       },
       py::arg("encoding"), py::arg("publishers"), py::arg("subscribers"), py::arg("types"),
       py::arg("used_only"),
-      "Why nothing of a robot is heard, in words. types: by topic; used_only: whether only what "
-      "a\n"
-      "node of the robot subscribes to is listened to.");
+      "Why nothing of a robot is heard, in words. types: by topic; used_only: whether only what\n"
+      "a node of the robot subscribes to is listened to.");
   m.def(
       "host_in", &ros1::hostIn, py::arg("uri"),
       "The name or the address in the URI of a node's XML-RPC server, printable; empty: there is "
@@ -84,10 +83,9 @@ void bindEventLogs(py::module& m) {
           py::arg("path"), py::arg("encoding"), py::arg("publishers") = NodesOfTopics(),
           py::arg("subscribers") = NodesOfTopics(), py::arg("hosts") = HostsState(),
           py::arg("progress") = py::none(),
-          "Adds a bag, or the files of one recording, as a recording of its own, with the nodes "
-          "of its topics and their "
-          "computers\n"
-          "where they are known; returns its BagSummary. After an error the log is of no use.")
+          "Adds a bag, or the files of one recording, as a recording of its own, with the nodes\n"
+          "of its topics and their computers where they are known; returns its BagSummary. After\n"
+          "an error the log is of no use.")
       .def("close", &ros1::EventLogWriter::close, "Ends the file; without that it has no index.");
 }
 

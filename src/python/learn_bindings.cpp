@@ -1,16 +1,20 @@
 #include <pybind11/stl.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
+#include "ros/model/bytes.h"
+#include "ros/model/model_fields.h"
 #include "self_awareness/core/learn.h"
 #include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/file_version.h"
 #include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::python {
@@ -19,47 +23,32 @@ namespace {
 namespace evidence = core::evidence;
 
 using Findings = evidence::LimitFinder::Findings;
-using PartState = std::tuple<std::uint64_t, std::vector<float>, std::vector<std::int64_t>>;
-using RecordingState = std::tuple<std::int64_t, std::int64_t, std::int64_t, bool, std::uint64_t,
-                                  std::vector<PartState>, std::vector<std::uint8_t>,
-                                  std::vector<std::int64_t>, std::string>;
-using FindingsState = std::vector<RecordingState>;
 
-FindingsState stateOf(const Findings& findings) {
-  FindingsState state;
+/// What is pickled: the bytes of a model file, and what that has no need of.
+py::bytes stateOf(const Findings& findings) {
+  std::vector<std::vector<std::int64_t>> firsts;
+  std::vector<std::uint8_t> trained_on;
   for (const evidence::LimitFinder::Recording& recording : findings) {
-    std::vector<PartState> parts;
-    for (const auto& [windows, evidence, gaps] : recording.parts) {
-      parts.emplace_back(windows, evidence, gaps);
-    }
-    std::vector<std::uint8_t> said;
-    for (const evidence::Said each : recording.said) {
-      said.push_back(static_cast<std::uint8_t>(each));
-    }
-    state.emplace_back(recording.start, recording.end, recording.robot_start, recording.trained_on,
-                       recording.windows, parts, said, recording.firsts, recording.robot);
+    firsts.push_back(recording.firsts);
+    trained_on.push_back(recording.trained_on ? 1 : 0);
   }
-  return state;
+  ros1::ByteWriter bytes;
+  bytes(findings, firsts, trained_on);
+  const std::vector<std::uint8_t> taken = bytes.take();
+  return {reinterpret_cast<const char*>(taken.data()), taken.size()};
 }
 
-Findings fromState(const FindingsState& state) {
+Findings fromState(const py::bytes& state) {
+  const auto text = static_cast<std::string>(state);
+  ros1::ByteReader bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(),
+                         ros1::kModelFile.format);
   Findings findings;
-  for (const auto& [start, end, robot_start, trained_on, windows, parts, said, firsts, robot] :
-       state) {
-    evidence::LimitFinder::Recording& recording = findings.emplace_back();
-    recording.start = start;
-    recording.end = end;
-    recording.robot_start = robot_start;
-    recording.trained_on = trained_on;
-    recording.windows = windows;
-    recording.firsts = firsts;
-    recording.robot = robot;
-    for (const auto& [part_windows, evidence, gaps] : parts) {
-      recording.parts.push_back({part_windows, evidence, gaps});
-    }
-    for (const std::uint8_t each : said) {
-      recording.said.push_back(static_cast<evidence::Said>(each));
-    }
+  std::vector<std::vector<std::int64_t>> firsts;
+  std::vector<std::uint8_t> trained_on;
+  bytes(findings, firsts, trained_on);
+  for (std::size_t k = 0; k < findings.size(); ++k) {
+    findings[k].firsts = firsts.at(k);
+    findings[k].trained_on = trained_on.at(k) != 0;
   }
   return findings;
 }
@@ -216,7 +205,7 @@ void bindCalibrator(py::module& m) {
                        "What a Calibrator learned from recordings; may go to another process.")
       .def(py::init<>(), "Of no recording.")
       .def(py::pickle([](const Findings& self) { return stateOf(self); },
-                      [](const FindingsState& state) { return fromState(state); }));
+                      [](const py::bytes& state) { return fromState(state); }));
 
   m.attr("OTHER_MODE") = core::kOtherMode;
   m.attr("HOURS_OF_ROBOTS") = evidence::LimitFinder::kHoursOfRobots;
@@ -248,10 +237,9 @@ void bindCalibrator(py::module& m) {
           py::arg("robot") = "", py::arg("attributes") = py::none(),
           py::arg("waiting") = std::vector<core::Waiting>(),
           "Takes in a recording; ids are the model's, and OTHER_MODE tells a mode that it does\n"
-          "not know.\n"
-          "fingerprint: that the training knows it by: it is judged by what the other half says;\n"
-          "None: it was not trained on. waiting: how the machine was, in the order of time\n"
-          "(RecordedEvents.waiting), empty: not known. The others: as Learner.count().")
+          "not know. fingerprint: that the training knows it by: it is judged by what the other\n"
+          "half says; None: it was not trained on. waiting: how the machine was, in the order of\n"
+          "time (RecordedEvents.waiting), empty: not known. The others: as Learner.count().")
       .def("part", &Calibrator::part, "A calibrator without findings, for the same model.")
       .def("findings", &Calibrator::findings, "LimitFindings of what was added.")
       .def("merge", &Calibrator::merge, py::arg("findings"))

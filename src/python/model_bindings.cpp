@@ -13,7 +13,6 @@
 
 #include "bindings.h"
 #include "core/evidence/count/starts.h"
-#include "self_awareness/core/verdict/suspect.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
 #include "self_awareness/ros/model/model_merge.h"
@@ -21,23 +20,7 @@
 namespace self_awareness::python {
 namespace {
 
-std::map<std::string, std::set<std::string>> robotsOf(const ros1::TrainedModel& model) {
-  std::map<std::string, std::set<std::string>> robots;
-  for (const core::evidence::Statistics& half : model.watched.halves) {
-    for (const core::evidence::Statistics::Recording& recording : half.recordings()) {
-      std::set<std::string>& components = robots[recording.robot];
-      for (core::EventId id = 0; id < recording.events.size(); ++id) {
-        if (recording.events[id] > 0) {
-          const core::EventType& type = half.vocabulary().at(id);
-          components.insert(core::componentOf(type.source, type.scope));
-        }
-      }
-    }
-  }
-  return robots.size() > 1 ? robots : std::map<std::string, std::set<std::string>>();
-}
-
-using HeardIn = std::tuple<std::string, std::int64_t, std::set<core::EventType>>;
+using HeardIn = std::tuple<std::string, std::int64_t, std::int64_t, std::set<core::EventType>>;
 
 std::vector<HeardIn> heardIn(const ros1::TrainedModel& model) {
   std::vector<HeardIn> heard;
@@ -52,26 +35,10 @@ std::vector<HeardIn> heardIn(const ros1::TrainedModel& model) {
       }
       heard.emplace_back(recording.robot,
                          recording.robot_start > 0 ? recording.robot_start : recording.start,
-                         std::move(types));
+                         recording.end, std::move(types));
     }
   }
   return heard;
-}
-
-/// When the last recording ended in which each event type came [ns]; 0: in none.
-std::vector<std::int64_t> heardUntil(const ros1::TrainedModel& model) {
-  std::vector<std::int64_t> until(model.vocabulary().size(), 0);
-  for (const core::evidence::Statistics& half : model.watched.halves) {
-    for (const core::evidence::Statistics::Recording& recording : half.recordings()) {
-      for (core::EventId id = 0; id < recording.events.size(); ++id) {
-        const auto known = model.vocabulary().find(half.vocabulary().at(id));
-        if (known && recording.events[id] > 0) {
-          until[*known] = std::max(until[*known], recording.end);
-        }
-      }
-    }
-  }
-  return until;
 }
 
 /// Gaps that an event type needs to be judged; the evidence detector's number can be set.
@@ -204,9 +171,8 @@ void bindModel(py::module& m) {
             ros1::rename(self, renames);
           },
           py::arg("rename"),
-          "Renames what it has learned by these rules, after those of its encoding, and drops "
-          "the\n"
-          "calibrations; watch() must follow. ValueError if two event types become one.")
+          "Renames what it has learned by these rules, after those of its encoding, and drops\n"
+          "the calibrations; watch() must follow. ValueError if two event types become one.")
       .def("watch", &TrainedModel::watch, "Chooses what is watched, by all counts.")
       .def(
           "watched_only",
@@ -315,17 +281,9 @@ void bindModel(py::module& m) {
           "what components subscribed to in every start of the training: set of (node, topic);\n"
           "empty: it is not known of all recordings, or there was one start")
       .def_property_readonly(
-          "robots", &robotsOf,
-          "components that came on each robot in training, by its name: a dict of sets; empty\n"
-          "unless several are known")
-      .def_property_readonly("heard_in", &heardIn,
-                             "what the evidence detector heard in each recording of the training: "
-                             "(robot, start\n"
-                             "of the robot, or else of the recording [ns], set of event types)")
-      .def_property_readonly("heard_until", &heardUntil,
-                             "when the last recording ended in which each event type came [ns], "
-                             "by id; 0: it came in\n"
-                             "none that the evidence detector learned from")
+          "heard_in", &heardIn,
+          "what the evidence detector heard in each recording of the training: (robot, start of\n"
+          "the robot, or else of the recording [ns], end of it [ns], set of event types)")
       .def_property_readonly("threshold", &TrainedModel::threshold, "None: not calibrated")
       .def_property_readonly(
           "bin_size", [](const TrainedModel& self) { return self.statistics.binning().bin_size; },

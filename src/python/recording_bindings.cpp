@@ -201,9 +201,8 @@ void bindBags(py::module& m) {
             }
             return std::make_tuple(publishers, subscribers, self.graph.hosts);
           },
-          "of an event log: publishers and subscribers, each a dict of sets of nodes by topic, "
-          "and\n"
-          "computers by node");
+          "of an event log: publishers and subscribers, each a dict of sets of nodes by topic,\n"
+          "and computers by node");
   m.def(
       "lasting_subscriptions", &ros1::lastingSubscriptions, py::arg("summary"),
       py::arg("encoding"),
@@ -222,9 +221,8 @@ void bindBags(py::module& m) {
         return missing;
       },
       py::arg("summary"), py::arg("encoding"), py::arg("expected"),
-      "Which of these (TrainedModel.subscriptions) are missing from a time [ns] on each, "
-      "although\n"
-      "the node runs, by the BagSummary of an event log; empty of a bag.");
+      "Which of these (TrainedModel.subscriptions) are missing from a time [ns] on each,\n"
+      "although the node runs, by the BagSummary of an event log; empty of a bag.");
   m.def(
       "summarise_bag",
       [](const Files& path, const InLog& recording) { return summaryOf(path, recording); },
@@ -239,9 +237,8 @@ void bindBags(py::module& m) {
                                   : std::optional(std::make_pair(span.start, span.end));
       },
       py::arg("path"),
-      "Stamps of a bag's first and last message [ns]; None: it is empty. Takes no time even "
-      "where\n"
-      "the bag is large, and finds not every damage. Raises BagError.");
+      "Stamps of a bag's first and last message [ns]; None: it is empty. Takes no time even\n"
+      "where the bag is large, and finds not every damage. Raises BagError.");
   m.def(
       "name_of_files", [](const Files& files) { return ros1::nameOf(pathsOf(files)); },
       py::arg("files"),
@@ -277,10 +274,9 @@ void bindBags(py::module& m) {
         return found;
       },
       py::arg("path"), py::arg("encoding"), py::arg("nodes"), py::arg("most"),
-      "The last lines that nodes wrote to /rosout, of each pair of a node, as events call it, "
-      "and\n"
-      "a time [ns] up to that time: (stamp [ns], level as in rosgraph_msgs/Log, text). Raises "
-      "BagError.");
+      "The last lines that nodes wrote to /rosout, of each pair of a node, as events call it,\n"
+      "and a time [ns] up to that time: (stamp [ns], level as in rosgraph_msgs/Log, text).\n"
+      "Raises BagError.");
 
   py::class_<core::Waiting>(
       m, "Waiting",
@@ -376,10 +372,9 @@ void bindRecordings(py::module& m) {
   m.def("pack_attributes", &packAttributes, py::arg("ages"), py::arg("sizes"), py::arg("steps"),
         py::arg("same"),
         "The attributes of messages, each as one number, uint32 (docs/method.md, section 3.10).\n"
-        "ages: since their stamps [s], NaN: there is no header, inf: the stamp is 0; sizes: "
-        "[bytes];\n"
-        "steps: of their numbers (header.seq) since the message before, -1: not known; same: the\n"
-        "bytes behind the header are those of the message before.");
+        "ages: since their stamps [s], NaN: there is no header, inf: the stamp is 0; sizes:\n"
+        "[bytes]; steps: of their numbers (header.seq) since the message before, -1: not known;\n"
+        "same: the bytes behind the header are those of the message before.");
   bindBags(m);
 }
 

@@ -101,8 +101,8 @@ def _is_learned(accepted: Acceptance, model: TrainedModel) -> bool:
                for node, topic in model.subscriptions):
             return False
         named = Acceptance(accepted.component)  # the topic is none that it sends
-    return any(until > 0 and until >= accepted.at and named.is_about(event_type)
-               for event_type, until in zip(model.event_types, model.heard_until))
+    return any(end >= accepted.at and any(map(named.is_about, event_types))
+               for _, _, end, event_types in model.heard_in)
 
 
 def _key(accepted: Acceptance) -> Tuple[str, ...]:

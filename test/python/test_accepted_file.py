@@ -11,10 +11,9 @@ from self_awareness import Acceptance, BagError, EventType, accepted_file
 
 def model(driver: int, replayed: int, base: int = 0) -> Any:
     """With the ends of the last recordings in which these came."""
-    return SimpleNamespace(event_types=[EventType('/driver', '/scan', 'T'),
-                                        EventType('', '/replayed', 'T'),
-                                        EventType('/base', '/odom', 'T')],
-                           heard_until=[driver, replayed, base],
+    came = zip([EventType('/driver', '/scan', 'T'), EventType('', '/replayed', 'T'),
+                EventType('/base', '/odom', 'T')], [driver, replayed, base])
+    return SimpleNamespace(heard_in=[('', 0, until, {kind}) for kind, until in came if until],
                            subscriptions={('/base', '/cmd_vel')})
 
 

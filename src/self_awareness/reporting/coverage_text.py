@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Any, Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
-from self_awareness import Coverage
+from self_awareness import Coverage, TrainedModel
 from self_awareness.reporting.text import aligned, duration, first_lines, first_of, rounded
 
 _COLUMNS = ('component', 'speaks every', 'death found after', 'late answers')
@@ -81,12 +81,15 @@ def unheard_lines(names: Sequence[str]) -> List[str]:
                        _MOST_LINES, ' topics that nobody subscribed to')
 
 
-def of_some_robots(robots: Mapping[str, Set[str]]) -> Dict[str, Any]:
-    """Return the robots of a training, and what only some of them have, by component.
-
-    Args:
-        robots: components by robot, as TrainedModel.robots has them.
-    """
+def of_some_robots(model: TrainedModel) -> Dict[str, Any]:
+    """Return the robots of a training, if they are several, and what only some of them have, by
+    component."""
+    robots: Dict[str, Set[str]] = {}
+    for robot, _, _, event_types in model.heard_in:
+        robots.setdefault(robot, set()).update(
+            each.source or each.scope for each in event_types)
+    if len(robots) < 2:
+        robots = {}
     everywhere = set.intersection(*robots.values()) if robots else set()
     optional = sorted(set().union(*robots.values()) - everywhere)
     return {'robots': sorted(robots),

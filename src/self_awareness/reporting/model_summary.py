@@ -85,7 +85,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
         'without': model.tuning.without,
         'unheard': coverage_text.unheard(model.unheard),
-        **coverage_text.of_some_robots(model.robots),
+        **coverage_text.of_some_robots(model),
         'left_out': sorted(model.left_out),
         'calibration': None,
     }

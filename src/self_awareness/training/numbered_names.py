@@ -172,7 +172,7 @@ def find(recordings: Sequence[Heard]) -> List[Numbered]:
 
 def _of_model(model: TrainedModel) -> List[Heard]:
     """Return what was heard in each recording that a model was trained on."""
-    return [Heard.of(robot, str(start), types) for robot, start, types in model.heard_in]
+    return [Heard.of(robot, str(start), types) for robot, start, _, types in model.heard_in]
 
 
 def _told(numbered: Numbered) -> str:

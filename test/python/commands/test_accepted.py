@@ -32,7 +32,8 @@ def _models(long_bags: Bags, tmp_path: Path, capsys) -> Tuple[str, str]:
 def heard(model: str) -> Acceptance:
     """Something that the model has learned, once it is accepted."""
     known = TrainedModel.load(model)
-    return Acceptance(known.event_types[0].source, '', 'slow', min(known.heard_until))
+    return Acceptance(known.event_types[0].source, '', 'slow',
+                      min(end for _, _, end, _ in known.heard_in))
 
 
 @pytest.mark.parametrize('program, source_option, bag_options', PROGRAMS)

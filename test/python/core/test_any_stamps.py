@@ -164,7 +164,6 @@ def test_the_papers_scores_are_the_literal_ones(
     assert sorted(ids) == reference.types
     for i, j in itertools.product(ids, ids):
         assert trained.histogram(ids[i], ids[j]) == dict(reference.counts[i, j])
-        assert model.entropies[ids[i], ids[j]] == pytest.approx(reference.entropy(i, j), abs=1e-12)
         assert model.weight(ids[i], ids[j]) == pytest.approx(
             reference.weight(i, j, reference.types), abs=1e-12)
     expected: List[Tuple[int, int, int, float]] = []
