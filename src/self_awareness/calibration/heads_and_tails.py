@@ -41,9 +41,8 @@ def is_longer(silence_s: float, others_s: float) -> bool:
 
 def often(recording: RecordingEvents) -> Iterator[Tuple[EventType, np.ndarray]]:
     """Return the event types with at least FEWEST_GAPS gaps, and their stamps [ns], in order."""
-    # Few bits sort several times as fast, and there are hardly ever so many event types.
-    few = len(recording.event_types) <= np.iinfo(np.uint16).max
-    order = np.argsort(recording.ids.astype(np.uint16) if few else recording.ids, kind='stable')
+    # Few bits sort several times as fast, and no recording has so many event types.
+    order = np.argsort(recording.ids.astype(np.uint16), kind='stable')
     ids, stamps = recording.ids[order], recording.stamps[order]
     firsts = np.flatnonzero(np.diff(ids, prepend=ids[:1] + 1)) if len(ids) else ids
     for begin, end in zip(firsts, [*firsts[1:], len(ids)]):
@@ -51,39 +50,19 @@ def often(recording: RecordingEvents) -> Iterator[Tuple[EventType, np.ndarray]]:
             yield recording.event_types[ids[begin]], stamps[begin:end]
 
 
-@dataclass(frozen=True)
-class StartUp:
-    """What a recording begins with, until all have come that come all the time.
+def without_start_up(recording: RecordingEvents) -> RecordingEvents:
+    """Return what is left of a recording after the start of the robot: until all have come that
+    come all the time.
 
-    Args:
-        seconds: from its first message, in tenths.
-        last: the component that came last.
+    It is the same if it is a part with a begin of its own, or all came within the first seconds.
+    Who comes later than START_UP_S, or pauses for as long later on, does not belong to the start.
     """
-
-    seconds: float
-    last: str
-
-
-def start_up(recording: RecordingEvents) -> Optional[StartUp]:
-    """Return the start of the robot in a recording; None: it is a part with a begin of its own, or
-    all came within the first seconds.
-
-    Who comes later than START_UP_S, or pauses for as long later on, does not belong to it.
-    """
-    if recording.part.start is not None:
-        return None
-    heads = [((stamps[0] - recording.origin) / SECOND_NS, component_of(kind))
-             for kind, stamps in often(recording)
-             if stamps[0] - recording.origin > np.diff(stamps).max()]
-    head_s, last = max((head for head in heads if head[0] <= START_UP_S), default=(0.0, ''))
-    return StartUp(int(10.0 * head_s) / 10.0, last) if head_s > _SETTLE_S else None
-
-
-def without(recording: RecordingEvents, begin: Optional[StartUp]) -> RecordingEvents:
-    """Return what is left of a recording after the start of the robot."""
-    if begin is None:
+    heads_s = [(stamps[0] - recording.origin) / SECOND_NS for _, stamps in often(recording)
+               if stamps[0] - recording.origin > np.diff(stamps).max()]
+    head_s = max((head_s for head_s in heads_s if head_s <= START_UP_S), default=0.0)
+    if recording.part.start is not None or head_s <= _SETTLE_S:
         return recording
-    part = replace(recording.part, start=begin.seconds)
+    part = replace(recording.part, start=int(10.0 * head_s) / 10.0)
     first = int(np.argmax(recording.stamps >= part.span(recording.origin, recording.end)[0]))
     attributes = recording.attributes
     return replace(recording, part=part, stamps=recording.stamps[first:],
@@ -133,23 +112,6 @@ def _of_components(found: Silences) -> Dict[str, Silence]:
             each.begin_s, min(each.length_s, other.length_s), min(each.head_s, other.head_s),
             min(each.tail_s, other.tail_s))
     return shortest
-
-
-def start_up_lines(found: Sequence[Tuple[BagPart, Optional[StartUp]]]) -> List[str]:
-    """Return what to tell of the starts of the robot that were left out.
-
-    Args:
-        found: the recordings as they were named, with their starts.
-    """
-    starts = [(each.seconds, each.last, str(part.whole()))
-              for part, each in found if each is not None]
-    if not starts:
-        return []
-    (least_s, *_), (most_s, last, part) = min(starts), max(starts)
-    seconds = f'{most_s:g} s' if least_s == most_s else f'{least_s:g} to {most_s:g} s'
-    return [f'start-up left out of {len(starts)} of {len(found)} recordings: the first {seconds}, '
-            f'until all had come that come all the time ({last} was last in {part}); '
-            '--start 0 trains on it, --start S leaves out S seconds of each']
 
 
 def lines(recordings: Sequence[Tuple[BagPart, Silences]], start: str, end: str) -> List[str]:

@@ -6,14 +6,14 @@ section 5).
 from __future__ import annotations
 
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Iterable, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from self_awareness import (OTHER_MODE, Calibration, Calibrator, LimitFindings, TrainedModel,
                             Waiting, recordings)
-from self_awareness.calibration.heads_and_tails import Silences, StartUp
+from self_awareness.calibration.heads_and_tails import Silences
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
 from self_awareness.workers import InProcess, Workers
@@ -42,10 +42,6 @@ class HeldOut:
     attributes: Optional[np.ndarray] = None
     waiting: Sequence[Waiting] = ()
 
-    def judge(self, _: TrainedModel, calibrator: Calibrator) -> None:
-        """Let it be judged."""
-        _add(calibrator, self, self.ids, None)
-
 
 @dataclass(frozen=True)
 class TrainedOn:
@@ -56,34 +52,26 @@ class TrainedOn:
         events: of the part, by ids of their own; None: read when they are needed, as the memory
             may not hold those of all recordings.
         silences: the longest one of every event type.
-        start_up: that was left out before it; None: nothing was.
     """
 
     part: BagPart
     events: Optional[RecordingEvents] = None
     silences: Silences = field(default_factory=dict)
-    start_up: Optional[StartUp] = None
 
     def __str__(self) -> str:
         return str(self.part)
 
-    def judge(self, trained: TrainedModel, calibrator: Calibrator) -> None:
-        """Let it be judged by the half of the training that it does not belong to."""
-        events = self.events
-        if events is None:
-            events = recordings.read(trained, self.part)
-            ids = events.ids
-        else:
-            known = {kind: index for index, kind in enumerate(trained.event_types)}
-            ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
-        _add(calibrator, events, ids, events.fingerprint)
+
+def _events_of(trained: TrainedModel, task: TrainedOn) -> RecordingEvents:
+    """Return the events of a recording of the training, by the ids of the model."""
+    if task.events is None:
+        return recordings.read(trained, task.part)
+    known = {kind: index for index, kind in enumerate(trained.event_types)}
+    ids = np.array([known[kind] for kind in task.events.event_types], np.uint32)
+    return replace(task.events, ids=ids[task.events.ids])
 
 
-def _add(calibrator: Calibrator, recording: Union[HeldOut, RecordingEvents], ids: np.ndarray,
-         fingerprint: Optional[int]) -> None:
-    calibrator.add(recording.stamps, ids, fingerprint, recording.robot_start,
-                   list(recording.clock_steps), recording.robot, recording.attributes,
-                   list(recording.waiting))
+_Task = Union[HeldOut, RecordingEvents, TrainedOn]
 
 
 def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
@@ -101,10 +89,7 @@ def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_
     """
     found_in = list(found_in)
     found = find(trained, settle_time, budgets,
-                 [HeldOut(recording.stamps, _ids(trained, recording), recording.robot_start,
-                          recording.clock_steps, recording.robot, recording.attributes,
-                          recording.waiting)
-                  for recording in found_in])
+                 [replace(recording, ids=_ids(trained, recording)) for recording in found_in])
     for calibration in found:
         calibration.recordings = [recording.recording for recording in found_in]
     return found
@@ -118,15 +103,16 @@ def _ids(trained: TrainedModel, recording: RecordingEvents) -> np.ndarray:
             if other else recording.ids)
 
 
-def find(trained: TrainedModel, settle_time: int, budgets: Sequence[float], tasks: Sequence[Any],
-         workers: Optional[Workers] = None, keep_findings: bool = False) -> List[Calibration]:
+def find(trained: TrainedModel, settle_time: int, budgets: Sequence[float],
+         tasks: Sequence[_Task], workers: Optional[Workers] = None,
+         keep_findings: bool = False) -> List[Calibration]:
     """Return limits by recordings, for each budget; without their names, which the caller adds.
 
     Args:
         trained: the model.
         settle_time: left out at the start of every part of a recording [ns].
         budgets: false alarms an hour that the limits allow.
-        tasks: HeldOut or TrainedOn recordings.
+        tasks: recordings that were not trained on, by the ids of the model, or of the training.
         workers: who does the work; None: this process.
         keep_findings: the model keeps what the recordings show, for later calibrations.
 
@@ -164,7 +150,13 @@ class _Judging:
         return _Judging, self._state
 
 
-def _judge(judging: _Judging, task: Any) -> LimitFindings:
+def _judge(judging: _Judging, task: _Task) -> LimitFindings:
+    """Let a recording be judged; one of the training by the half that it does not belong to."""
     calibrator = judging.calibrator.part()
-    task.judge(judging.trained, calibrator)
+    fingerprint = None
+    if isinstance(task, TrainedOn):
+        task = _events_of(judging.trained, task)
+        fingerprint = task.fingerprint
+    calibrator.add(task.stamps, task.ids, fingerprint, task.robot_start, task.clock_steps,
+                   task.robot, task.attributes, task.waiting)
     return calibrator.findings()

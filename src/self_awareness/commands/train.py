@@ -93,8 +93,6 @@ def _train(arguments: argparse.Namespace) -> None:
     if arguments.details:
         cli.print_lines([
             *model_text.lines(summarise(model)),
-            *heads_and_tails.start_up_lines([(each.part, each.start_up)
-                                             for each in trained.trained_on]),
             *heads_and_tails.lines(_silences(trained), '--start', '--end')])
     left_out = arguments.leave_out_holes
     for line in holes.lines(found, [] if left_out else model.coverage(),

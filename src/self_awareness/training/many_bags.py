@@ -224,8 +224,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
     counting = how.counting
     try:
         whole, encoding, summary = _read(counting, part)
-        begin = heads_and_tails.start_up(whole)
-        events = heads_and_tails.without(whole, begin)
+        events = heads_and_tails.without_start_up(whole)
         part = events.part
         learner = counting.learner(encoding)
         learner.count(events.event_types, events.stamps, events.ids, events.fingerprint,
@@ -251,7 +250,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
         warnings.append(_COPIED)
     lines = [f'{part}: {seconds:.1f} s, {len(events.stamps)} events',
              *(f'{part}: warning: {warning}' for warning in filter(None, warnings))]
-    trained_on = TrainedOn(part, events, heads_and_tails.silences(events), begin)
+    trained_on = TrainedOn(part, events, heads_and_tails.silences(events))
     return _Sum(len(events.stamps), model, [trained_on], lines)
 
 

@@ -31,28 +31,22 @@ def recorded(name: str, start: Optional[float] = None,
         ORIGIN + int(LENGTH_S * SECOND_NS), 1)
 
 
-def test_the_start_lasts_until_all_have_come_that_come_all_the_time() -> None:
-    begin = heads_and_tails.start_up(recorded('a', laser=(14.5, 100.0), gps=(7.0, 100.0)))
-    assert begin is not None and begin.last == '/laser'
-    assert begin.seconds == pytest.approx(14.6)
-    assert heads_and_tails.start_up(recorded('a', laser=(3.0, 100.0))) is None
-    late = recorded('a', laser=(14.5, 100.0), camera=(40.0, 100.0), joystick=(20.0, 22.0))
-    begin = heads_and_tails.start_up(late)
-    assert begin is not None and begin.last == '/laser', 'these do not come with the others'
+@pytest.mark.parametrize('heard, begin', [
+    ({'laser': (14.5, 100.0), 'gps': (7.0, 100.0)}, 14.6),
+    ({'laser': (3.0, 100.0)}, None),
+    # These do not come with the others.
+    ({'laser': (14.5, 100.0), 'camera': (40.0, 100.0), 'joystick': (20.0, 22.0)}, 14.6)])
+def test_the_start_lasts_until_all_have_come_that_come_all_the_time(
+        heard: Dict[str, Tuple[float, float]], begin: Optional[float]) -> None:
+    left = heads_and_tails.without_start_up(recorded('a', **heard))
+    assert left.part.start == begin and len(left.ids) == len(left.stamps)
+    assert (left.stamps[0] - ORIGIN) / SECOND_NS == pytest.approx(begin or 0.0, abs=0.002)
 
 
 def test_a_begin_that_is_named_stays() -> None:
     for start in (0.0, 3.0):
-        assert heads_and_tails.start_up(recorded('a', start, laser=(14.5, 100.0))) is None
-
-
-def test_the_start_is_left_out() -> None:
-    whole = recorded('a', laser=(14.5, 100.0))
-    left = heads_and_tails.without(whole, heads_and_tails.start_up(whole))
-    assert str(left.part) == 'a@14.6'
-    assert (left.stamps[0] - ORIGIN) / SECOND_NS == pytest.approx(14.6, abs=0.002)
-    assert len(left.ids) == len(left.stamps)
-    assert heads_and_tails.without(whole, None) is whole
+        whole = recorded('a', start, laser=(14.5, 100.0))
+        assert heads_and_tails.without_start_up(whole) is whole
 
 
 def test_who_starts_after_recordings_or_ends_before_them_is_told() -> None:
@@ -65,13 +59,3 @@ def test_who_starts_after_recordings_or_ends_before_them_is_told() -> None:
         '(--start leaves it out)',
         '/move ends before the recording does in 2 of 3: a@0 by 6.0 s, c@0 by 9.0 s. That counts '
         'as no pause (--end leaves it out)']
-
-
-def test_what_is_left_out_is_told_once() -> None:
-    parts = [recorded('a', laser=(14.5, 100.0)), recorded('b')]
-    found = [(each.part, heads_and_tails.start_up(each)) for each in parts]
-    assert heads_and_tails.start_up_lines(found) == [
-        'start-up left out of 1 of 2 recordings: the first 14.6 s, until all had come that come '
-        'all the time (/laser was last in a); --start 0 trains on it, --start S leaves out S '
-        'seconds of each']
-    assert heads_and_tails.start_up_lines(found[1:]) == []
