@@ -38,7 +38,7 @@ def recorded(name: str, start: Optional[float] = None,
     ({'laser': (14.5, 100.0), 'camera': (40.0, 100.0), 'joystick': (20.0, 22.0)}, 14.6)])
 def test_the_start_lasts_until_all_have_come_that_come_all_the_time(
         heard: Dict[str, Tuple[float, float]], begin: Optional[float]) -> None:
-    left = heads_and_tails.without_start_up(recorded('a', **heard))
+    left = heads_and_tails.without_start_up(recorded('a', None, **heard))
     assert left.part.start == begin and len(left.ids) == len(left.stamps)
     assert (left.stamps[0] - ORIGIN) / SECOND_NS == pytest.approx(begin or 0.0, abs=0.002)
 
