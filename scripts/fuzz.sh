@@ -38,7 +38,7 @@ fuzz() {
   local log=$workspace/$corpus.log
   mkdir -p "$workspace/corpus/$corpus"
   # The largest allocation is a chunk of a bag that is unpacked; 10 s are a hang.
-  if ! "$programs/fuzz_${corpus#former_}" -max_total_time="$seconds" -timeout=10 -malloc_limit_mb=1100 \
+  if ! "$programs/fuzz_$corpus" -max_total_time="$seconds" -timeout=10 -malloc_limit_mb=1100 \
       -rss_limit_mb=3000 -max_len=65536 -print_final_stats=1 -print_funcs=0 -verbosity=0 \
       -artifact_prefix="$found/$corpus-" "$workspace/corpus/$corpus" "$seeds/$corpus" > "$log" 2>&1; then
     tail -n 100 "$log"
@@ -51,6 +51,5 @@ export -f fuzz
 export workspace programs seeds found seconds
 
 say "Fuzzing, $seconds s each, as many at once as there are processors"
-# A bag of format 1.2 takes ten times as long, since rosbag reads it: it has a corpus of its own.
-printf '%s\n' message_field message_upgrade encoding bag former_bag event_log model standing_alarm |
+printf '%s\n' message_field message_upgrade encoding bag event_log model standing_alarm |
   xargs --max-procs="$(nproc)" -I CORPUS bash -c 'fuzz CORPUS'

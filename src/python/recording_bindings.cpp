@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "bindings.h"
-#include "ros/bag/bag_span.h"
 #include "ros/bag/log_lines.h"
+#include "ros/bag/open_bag.h"
 #include "ros/bag/recording_files.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/event_log_reader.h"

@@ -191,8 +191,6 @@ int main(int argc, char** argv) {
     return 2;
   }
   writeBags(folderOf(argv[1], "bag"));
-  ros1::bag_bytes::writeFile(folderOf(argv[1], "former_bag") + "former",
-                             ros1::bag_bytes::formerBag());
   writeEventLogs(folderOf(argv[1], "event_log"));
   writeMessages(folderOf(argv[1], "message_field"));
   writeEncodings(folderOf(argv[1], "encoding"));

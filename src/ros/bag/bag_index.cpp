@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -12,7 +11,6 @@
 #include "../text.h"
 #include "bag_records.h"
 #include "chunk_records.h"
-#include "former_bag.h"
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::ros1 {
@@ -27,6 +25,8 @@ constexpr std::size_t kLongestQuotedName = 100;  // of a name in an error [bytes
 
 struct ChunkInfo {
   std::uint64_t position = 0;
+  std::int64_t start = 0;  // stamps of its messages [ns]
+  std::int64_t end = 0;
   std::map<std::uint32_t, std::uint64_t> messages;  // by connection
 };
 
@@ -34,27 +34,33 @@ class IndexReader {
  public:
   explicit IndexReader(const std::string& path, bool unpack = false,
                        const ChunkProgress& progress = nullptr)
-      : file_(path), unpack_(unpack), progress_(progress) {}
+      : file_(path), unpack_(unpack), progress_(progress) {
+    readConnections();
+  }
 
-  /// None if the bag is of another format.
-  std::optional<BagIndex> read() {
-    if (!readConnections()) {
-      return std::nullopt;
-    }
+  BagIndex read() {
     readChunks();
     return std::move(index_);
   }
-
-  std::vector<Connection> connections() {
-    readConnections();
-    return std::move(index_.connections);
+  std::vector<Connection> connections() { return std::move(index_.connections); }
+  BagSpan span() {
+    BagSpan span;
+    for (std::uint32_t i = 0; i < chunks_; ++i) {
+      const ChunkInfo chunk = takeChunkInfo();
+      span.start = span.messages == 0 ? chunk.start : std::min(span.start, chunk.start);
+      span.end = std::max(span.end, chunk.end);
+      for (const auto& [connection, messages] : chunk.messages) {
+        span.messages += messages;
+      }
+    }
+    return span;
   }
 
  private:
-  /// Reads the connections at the end of the bag; false if it is of another format.
-  bool readConnections() {
+  /// Reads the connections at the end of the bag.
+  void readConnections() {
     if (file_.at(0, kFormat.size()) != kFormat) {
-      return false;
+      throw FormatError("it is no bag of format 2.0");
     }
     const PiecesOfFile::Record start = file_.record(kFormat.size(), kFileHeaderBytes);
     if (opOf(start.header) != Op::kFileHeader) {
@@ -79,7 +85,6 @@ class IndexReader {
       info_position_ = record.end;
       addConnection(record);
     }
-    return true;
   }
 
   void addConnection(const PiecesOfFile::Record& record) {
@@ -166,6 +171,8 @@ class IndexReader {
     }
     ChunkInfo chunk;
     chunk.position = number<std::uint64_t>(record.header, "chunk_pos");
+    chunk.start = timeIn(record.header, "start_time");
+    chunk.end = timeIn(record.header, "end_time");
     for (std::string_view counts = record.data; !counts.empty();) {
       const auto connection = takeNumber<std::uint32_t>(counts);
       chunk.messages[connection] = takeNumber<std::uint32_t>(counts);
@@ -371,15 +378,12 @@ std::vector<Connection> readBagConnections(const std::string& path) {
   return IndexReader(path).connections();
 }
 
-std::optional<BagIndex> readIndexOfFormat2(const std::string& path) {
-  return IndexReader(path).read();
+BagSpan readBagSpan(const std::string& path) {
+  return IndexReader(path).span();
 }
 
-BagIndex readBagIndex(const std::string& path, const ChunkProgress& progress) {
-  if (std::optional<BagIndex> index = IndexReader(path, true, progress).read()) {
-    return std::move(*index);
-  }
-  return readFormerBag(path);
+BagIndex readBagIndex(const std::string& path, bool unpack, const ChunkProgress& progress) {
+  return IndexReader(path, unpack, progress).read();
 }
 
 }  // namespace self_awareness::ros1

@@ -11,8 +11,7 @@
 
 /// The index of a bag: one array in order. rosbag has a tree for every connection, 64 bytes a
 /// message, and merges them in every pass, by sorting all connections at every message. To build,
-/// merge and free its trees takes four times as long as to read this array. Bags of format 1.2 are
-/// checked, and left to rosbag.
+/// merge and free its trees takes four times as long as to read this array.
 namespace self_awareness::ros1 {
 
 /// When a message came, and where it lies.
@@ -39,7 +38,6 @@ struct BagIndex {
   std::vector<std::uint32_t> numbers;  ///< of the connections, in the file
   /// In the order of the recording: by time, and in the order of the file where that is the same.
   std::vector<BagIndexEntry> entries;
-  bool by_rosbag = false;  ///< only rosbag can read this bag
   bool by_python = false;  ///< rosbag's Python library wrote it
   bool recorded = false;   ///< its connections have headers as `rosbag record` writes them
 };
@@ -47,24 +45,30 @@ struct BagIndex {
 /// Called with the number of chunks that were checked, and of all; may throw to stop.
 using ChunkProgress = std::function<void(std::uint64_t done, std::uint64_t all)>;
 
-/// Only the connections, which takes no time even where the bag is large; none if the file is no
-/// bag, or only rosbag can read it.
-/// @throw rosbag::BagException as readBagIndex()
+/// Only the connections, which takes no time even where the bag is large.
+/// @throw rosbag::BagException if the file is no bag of format 2.0, has no index, or it is damaged
 std::vector<Connection> readBagConnections(const std::string& path);
 
-/// The index of a bag of format 2.0, which this package's own code reads; none if the file is of
-/// another format.
-///
+/// What the end of a bag says of its messages.
+struct BagSpan {
+  std::int64_t start = 0;      ///< stamp of the first message [ns]
+  std::int64_t end = 0;        ///< stamp of the last message [ns]
+  std::uint64_t messages = 0;  ///< 0: it is empty
+};
+
+/// Reads neither messages nor their index, which takes no time even where the bag is large. So not
+/// every damage is found.
+/// @throw rosbag::BagException as readBagConnections()
+BagSpan readBagSpan(const std::string& path);
+
 /// Checks the index as well: it must list every chunk, once, and in it as many messages as it
 /// says, each in a place of its own. Where the chunk is not compressed, the messages themselves
 /// must say the same, and its connections what the bag says of them. What is read follows the size
 /// of the file, whatever the numbers in it say.
-/// @throw rosbag::BagException if the bag has no index, or it is damaged
-std::optional<BagIndex> readIndexOfFormat2(const std::string& path);
-
-/// The same, and by rosbag of what else it can read. Unpacks compressed chunks as well and checks
-/// what is in them, which takes most of the time where there are any.
-/// @throw rosbag::BagException as readIndexOfFormat2()
-BagIndex readBagIndex(const std::string& path, const ChunkProgress& progress = nullptr);
+/// @param unpack compressed chunks as well, and check what is in them, which takes most of the
+/// time where there are any
+/// @throw rosbag::BagException as readBagConnections()
+BagIndex readBagIndex(const std::string& path, bool unpack = false,
+                      const ChunkProgress& progress = nullptr);
 
 }  // namespace self_awareness::ros1

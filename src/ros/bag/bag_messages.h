@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <list>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bag_index.h"
-#include "bag_records.h"
+#include "chunk_records.h"
 #include "self_awareness/ros/attribute_reader.h"
 
 namespace self_awareness::ros1 {
@@ -16,19 +18,39 @@ namespace self_awareness::ros1 {
 /// unpacked.
 class BagMessages {
  public:
-  virtual ~BagMessages() = default;
+  /// The messages of the bag that the index was read from.
+  /// @param numbers of its connections (BagIndex)
+  /// @param largest that a compressed chunk may be when it is unpacked [bytes]
+  BagMessages(const std::string& path, std::vector<std::uint32_t> numbers,
+              std::uint64_t largest = bag_records::kLargestChunk);
 
   /// @throw rosbag::BagException if it cannot be read, or is not the one that the index says
-  virtual void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) = 0;
+  void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content);
   /// Passes a message by a reader of attributes, whose begin() it calls, but not its end(); where
   /// the message is not compressed, only the bytes that matter are read.
   /// @throw rosbag::BagException as read()
-  virtual void pass(const BagIndexEntry& entry, AttributeReader& reader) = 0;
+  void pass(const BagIndexEntry& entry, AttributeReader& reader);
 
-  /// The messages of the bag that the index was read from.
-  /// @param largest that a compressed chunk may be when it is unpacked [bytes]
-  static std::unique_ptr<BagMessages> open(const std::string& path, const BagIndex& index,
-                                           std::uint64_t largest = bag_records::kLargestChunk);
+ private:
+  struct KeptChunk {
+    std::uint64_t position = 0;
+    std::uint64_t unpacked = 0;  // in memory [bytes]
+    std::unique_ptr<const ChunkRecords> records;
+  };
+
+  /// The records of a chunk.
+  const ChunkRecords& records(std::uint64_t position);
+  /// Forgets those that were read longest ago, until there is room for another one.
+  void makeRoom(std::uint64_t unpacked);
+  /// Where a message lies; it must be the one that the index says.
+  bag_records::PiecesOfFile::Head head(const ChunkRecords& records,
+                                       const BagIndexEntry& entry) const;
+
+  bag_records::PiecesOfFile file_;
+  std::vector<std::uint32_t> numbers_;  // of the connections, in the file
+  std::uint64_t largest_;               // that a chunk may be when it is unpacked [bytes]
+  std::list<KeptChunk> chunks_;         // that was read last first
+  std::uint64_t unpacked_ = 0;          // of all of them [bytes]
 };
 
 }  // namespace self_awareness::ros1

@@ -112,10 +112,7 @@ std::set<core::EventType> eventTypesIn(const std::vector<std::string>& paths,
     try {
       connections = readBagConnections(path);
     } catch (const rosbag::BagException&) {
-      connections.clear();  // to open it says what is wrong
-    }
-    if (connections.empty()) {
-      connections = openBag(path).connections;
+      connections = openBag(path).connections;  // says what is wrong
     }
     for (const Connection& connection : connections) {
       if (std::optional<core::EventType> type = encoder.typeOf(connection)) {
@@ -181,7 +178,7 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
   std::vector<std::uint8_t> content;
   std::vector<core::EventId> latched;  // what lasts when the range begins
   std::uint64_t done = 0;
-  withMessages([&](BagMessages& messages) {
+  withMessages([&](RecordingFiles::Messages messages) {
     for (const BagIndexEntry& entry : files_->index().entries) {
       if (progress && done % kMessagesPerProgress == 0) {
         progress(done, summary_.messages);
@@ -273,7 +270,7 @@ std::map<std::string, std::vector<double>> BagReader::readNumbers(const Encoding
     }
   }
   std::vector<std::uint8_t> content;
-  withMessages([&](BagMessages& messages) {
+  withMessages([&](RecordingFiles::Messages messages) {
     for (const BagIndexEntry& entry : files_->index().entries) {
       std::optional<Read>& read = reads[entry.connection];
       if (read && read->encoder.accept() && stamps.holds(entry.stamp)) {
@@ -288,7 +285,7 @@ std::map<std::string, std::vector<double>> BagReader::readNumbers(const Encoding
 template <typename Use>
 void BagReader::withMessages(const Use& use) const {
   try {
-    use(*files_->openMessages());
+    use(RecordingFiles::Messages(*files_));
   } catch (const rosbag::BagException& error) {
     throw BagError(summary_.path + ": a message cannot be read (" + error.what() + ")" +
                    reindexHint(summary_.path));

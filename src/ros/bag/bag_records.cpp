@@ -76,12 +76,16 @@ std::int64_t takeTime(std::string_view& bytes) {
   return seconds * core::kNanosecondsPerSecond + nanoseconds;
 }
 
+std::int64_t timeIn(std::string_view header, std::string_view name) {
+  std::string_view time = field(header, name);
+  return takeTime(time);
+}
+
 MessageHeader messageHeader(std::string_view header) {
   if (opOf(header) != Op::kMessage) {
     throw FormatError("a record of another kind");
   }
-  std::string_view time = field(header, "time");
-  return {number<std::uint32_t>(header, "conn"), takeTime(time)};
+  return {number<std::uint32_t>(header, "conn"), timeIn(header, "time")};
 }
 
 Chunk::Chunk(PiecesOfFile& file, std::uint64_t position) {

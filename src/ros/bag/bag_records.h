@@ -164,6 +164,9 @@ MessageHeader messageHeader(std::string_view header);
 /// Takes a time [ns].
 /// @throw FormatError if it has a second of nanoseconds, or more
 std::int64_t takeTime(std::string_view& bytes);
+/// A time in a field of a header [ns].
+/// @throw FormatError as takeTime(), or if there is no field of that name
+std::int64_t timeIn(std::string_view header, std::string_view name);
 
 /// The header of a chunk.
 struct Chunk {

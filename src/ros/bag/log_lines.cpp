@@ -63,9 +63,9 @@ std::vector<std::vector<LogLine>> lastLinesOfFile(const std::string& path, const
   const std::vector<BagIndexEntry> places = linesIn(index);
   std::vector<std::vector<LogLine>> found;
   try {
-    const std::unique_ptr<BagMessages> messages = BagMessages::open(path, index);
+    BagMessages messages(path, index.numbers);
     for (const LogQuery& query : queries) {
-      found.push_back(lastLines(query, places, encoder, *messages, most));
+      found.push_back(lastLines(query, places, encoder, messages, most));
     }
   } catch (const rosbag::BagException& error) {
     throw BagError(path + ": a message cannot be read (" + error.what() + ")" + reindexHint(path));

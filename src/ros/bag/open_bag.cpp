@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "bag_records.h"
-#include "bag_span.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 
 namespace self_awareness::ros1 {
@@ -31,6 +30,8 @@ const std::vector<Foreign>& foreignFormats() {
        "a recording of ROS 2 (SQLite); rosbags-convert (pip install rosbags) makes a bag of it, "
        "but "
        "it does not say who sent what"},
+      {"#ROSBAG V",
+       "of the format before 2010; write it anew with: rosbag filter OLD.bag NEW.bag True"},
       {"\x1f\x8b", "compressed by gzip; unpack it first (gunzip)"},
       {"BZh", "compressed by bzip2; unpack it first (bunzip2)"},
       {{"\xfd"
@@ -50,7 +51,7 @@ bool startsWith(const std::string& text, const std::string& start) {
 
 /// Why a file that begins so is no bag of ROS 1; empty: it may be one.
 std::string whyNoBag(const std::string& start) {
-  if (startsWith(start, "#ROSBAG V")) {
+  if (startsWith(start, "#ROSBAG V2.")) {
     return "";
   }
   if (start.empty()) {
@@ -131,19 +132,11 @@ std::string reindexHint(const std::string& path) {
 }
 
 BagIndex openBag(const std::string& path, const ChunkProgress& progress) {
-  return readBag(path, [&] { return readBagIndex(path, progress); });
+  return readBag(path, [&] { return readBagIndex(path, true, progress); });
 }
 
 BagSpan spanOfBag(const std::string& path) {
-  return readBag(path, [&] {
-    if (const std::optional<BagSpan> span = readSpanOfFormat2(path)) {
-      return *span;
-    }
-    const BagIndex index = readBagIndex(path);
-    return index.entries.empty() ? BagSpan()
-                                 : BagSpan{index.entries.front().stamp, index.entries.back().stamp,
-                                           index.entries.size()};
-  });
+  return readBag(path, [&] { return readBagSpan(path); });
 }
 
 }  // namespace self_awareness::ros1

@@ -56,68 +56,12 @@ void leaveOut(const std::set<Place>& places, std::vector<BagIndexEntry>& entries
       entries.end());
 }
 
-/// Reads messages of several files as if they were of one. There may be hundreds, so only the one
-/// that was read last stays open, with its neighbours.
-class MessagesOfFiles : public BagMessages {
- public:
-  struct File {
-    std::string path;
-    std::uint64_t begin = 0;                // of the positions of its chunks
-    std::shared_ptr<const BagIndex> index;  // without entries
-    std::unique_ptr<BagMessages> messages;  // none: it is not open
-  };
-
-  explicit MessagesOfFiles(std::vector<File> files) : files_(std::move(files)) {}
-
-  void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) override {
-    inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
-      messages.read(there, content);
-    });
-  }
-
-  void pass(const BagIndexEntry& entry, AttributeReader& reader) override {
-    inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
-      messages.pass(there, reader);
-    });
-  }
-
- private:
-  template <typename Use>
-  void inItsFile(const BagIndexEntry& entry, const Use& use) {
-    const auto file = std::prev(std::upper_bound(
-        files_.begin(), files_.end(), entry.chunk,
-        [](std::uint64_t chunk, const File& each) { return chunk < each.begin; }));
-    BagIndexEntry there = entry;
-    there.chunk -= file->begin;
-    try {
-      if (!file->messages) {
-        for (auto other = files_.begin(); other != files_.end(); ++other) {
-          if (std::abs(std::distance(other, file)) > 1) {
-            other->messages.reset();
-          }
-        }
-        file->messages = BagMessages::open(file->path, *file->index);
-      }
-      use(*file->messages, there);
-    } catch (const rosbag::BagException& error) {
-      throw BagError(file->path + ": a message cannot be read (" + error.what() + ")" +
-                     reindexHint(file->path));
-    }
-  }
-
-  std::vector<File> files_;
-};
-
 }  // namespace
 
 RecordingFiles::RecordingFiles(const std::vector<std::string>& paths,
                                const ChunkProgress& progress) {
   for (const std::string& path : paths) {
-    BagIndex index = openBag(path, progress);
-    if (paths.size() > 1 && index.by_rosbag) {
-      throw BagError(path + ": a bag of an old format is a recording of its own; name it alone");
-    }
-    add(path, std::move(index));
+    add(path, openBag(path, progress));
   }
   // Who receives the messages has several threads, which may overtake each other at a split.
   if (!std::is_sorted(index_.entries.begin(), index_.entries.end(), Earlier())) {
@@ -137,13 +81,12 @@ void RecordingFiles::add(const std::string& path, BagIndex index) {
   repeated.clear();
 
   const std::vector<std::uint32_t> joined = join(index);
-  const auto kept = std::make_shared<BagIndex>();
-  kept->by_rosbag = index.by_rosbag;
-  kept->numbers.resize(index_.connections.size());
+  std::vector<std::uint32_t> numbers(index_.connections.size());
   for (std::size_t i = 0; i < index.numbers.size(); ++i) {
-    kept->numbers[joined[i]] = index.numbers[i];
+    numbers[joined[i]] = index.numbers[i];
   }
-  files_.push_back({path, end_, index.entries.empty() ? 0 : index.entries.front().stamp, kept});
+  files_.push_back(
+      {path, end_, index.entries.empty() ? 0 : index.entries.front().stamp, std::move(numbers)});
   for (BagIndexEntry& entry : index.entries) {
     const bool may_be_repeated = !latched.empty() && latched.count(placeOf(entry)) > 0;
     entry.chunk += files_.back().begin;
@@ -159,11 +102,10 @@ void RecordingFiles::add(const std::string& path, BagIndex index) {
       last_latched_[entry.connection] = entry;
     }
   }
-  index_.by_rosbag |= index.by_rosbag;
   index_.by_python |= index.by_python;
   index_.recorded |= index.recorded;
   if (files_.size() == 1) {
-    index_.numbers = kept->numbers;
+    index_.numbers = files_.front().numbers;
     index_.entries = std::move(index.entries);
   } else {
     index_.entries.insert(index_.entries.end(), index.entries.begin(), index.entries.end());
@@ -201,11 +143,11 @@ bool RecordingFiles::isRepeated(const BagIndexEntry& entry) const {
   if (before == last_latched_.end()) {
     return false;
   }
-  const std::unique_ptr<BagMessages> messages = openMessages();
+  Messages messages(*this);
   std::vector<std::uint8_t> first;
   std::vector<std::uint8_t> again;
-  messages->read(before->second, first);
-  messages->read(entry, again);
+  messages.read(before->second, first);
+  messages.read(entry, again);
   return first == again;
 }
 
@@ -217,12 +159,39 @@ std::vector<BagSummary::File> RecordingFiles::files() const {
   return files;
 }
 
-std::unique_ptr<BagMessages> RecordingFiles::openMessages() const {
-  std::vector<MessagesOfFiles::File> files;
-  for (const File& file : files_) {
-    files.push_back({file.path, file.begin, file.index, nullptr});
+void RecordingFiles::Messages::read(const BagIndexEntry& entry,
+                                    std::vector<std::uint8_t>& content) {
+  inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
+    messages.read(there, content);
+  });
+}
+
+void RecordingFiles::Messages::pass(const BagIndexEntry& entry, AttributeReader& reader) {
+  inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
+    messages.pass(there, reader);
+  });
+}
+
+template <typename Use>
+void RecordingFiles::Messages::inItsFile(const BagIndexEntry& entry, const Use& use) {
+  const auto file = std::prev(
+      std::upper_bound(files_.begin(), files_.end(), entry.chunk,
+                       [](std::uint64_t chunk, const File& each) { return chunk < each.begin; }));
+  const std::ptrdiff_t number = file - files_.begin();
+  BagIndexEntry there = entry;
+  there.chunk -= file->begin;
+  try {
+    auto opened = open_.find(number);
+    if (opened == open_.end()) {
+      open_.erase(open_.begin(), open_.lower_bound(number - 1));
+      open_.erase(open_.upper_bound(number + 1), open_.end());
+      opened = open_.try_emplace(number, file->path, file->numbers).first;
+    }
+    use(opened->second, there);
+  } catch (const rosbag::BagException& error) {
+    throw BagError(file->path + ": a message cannot be read (" + error.what() + ")" +
+                   reindexHint(file->path));
   }
-  return std::make_unique<MessagesOfFiles>(std::move(files));
 }
 
 std::string nameOf(const std::vector<std::string>& paths) {

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -17,11 +17,12 @@ namespace self_awareness::ros1 {
 /// recorder repeated at the beginning of a file (rosbag record --repeat-latched) is no message,
 /// and left out.
 class RecordingFiles {
+  struct File;
+
  public:
   /// Reads the index of each.
   /// @param paths one or more
-  /// @throw BagError as openBag(), if one of several is of a format that only rosbag can read, or
-  /// a repeated message cannot be read
+  /// @throw BagError as openBag(), or if a repeated message cannot be read
   explicit RecordingFiles(const std::vector<std::string>& paths,
                           const ChunkProgress& progress = nullptr);
 
@@ -30,15 +31,33 @@ class RecordingFiles {
   std::vector<BagSummary::File> files() const;
   /// Where the clock was set back: stamps of the index count on.
   const std::vector<SetBack>& setBack() const { return set_back_; }
-  /// The messages of all files. What cannot be read names its file.
-  std::unique_ptr<BagMessages> openMessages() const;
+  /// Reads messages of the files as if they were of one. There may be hundreds, so only the one
+  /// that was read last stays open, with its neighbours.
+  class Messages {
+   public:
+    /// @param files must outlive this
+    explicit Messages(const RecordingFiles& files) : files_(files.files_) {}
+    /// As BagMessages::read().
+    /// @throw BagError if it cannot be read, which names the file
+    void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content);
+    /// As BagMessages::pass().
+    /// @throw BagError as read()
+    void pass(const BagIndexEntry& entry, AttributeReader& reader);
+
+   private:
+    template <typename Use>
+    void inItsFile(const BagIndexEntry& entry, const Use& use);
+
+    const std::vector<File>& files_;
+    std::map<std::ptrdiff_t, BagMessages> open_;  // by index of the file
+  };
 
  private:
   struct File {
     std::string path;
-    std::uint64_t begin = 0;                // where the positions of its chunks begin
-    std::int64_t start = 0;                 // stamp of its first message [ns]
-    std::shared_ptr<const BagIndex> index;  // how it is read, by the connections of index_
+    std::uint64_t begin = 0;             // where the positions of its chunks begin
+    std::int64_t start = 0;              // stamp of its first message [ns]
+    std::vector<std::uint32_t> numbers;  // of its connections, by those of index_
   };
 
   void add(const std::string& path, BagIndex index);

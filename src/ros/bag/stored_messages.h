@@ -25,11 +25,11 @@ bool holds(const Connection& connection) {
 class StoredMessages {
  public:
   /// @param index of the bag; must live as long as this object
-  /// @param largest as in BagMessages::open()
+  /// @param largest as in BagMessages
   /// @throw rosbag::BagException if the file cannot be opened
   StoredMessages(const std::string& path, const BagIndex& index,
                  std::uint64_t largest = bag_records::kLargestChunk)
-      : index_(&index), messages_(BagMessages::open(path, index, largest)) {}
+      : index_(&index), messages_(path, index.numbers, largest) {}
 
   /// @param entry of a connection that holds this type of message
   /// @throw rosbag::BagException if it cannot be read
@@ -38,7 +38,7 @@ class StoredMessages {
   template <typename Message>
   Message read(const BagIndexEntry& entry, ContentDigest* digest = nullptr) {
     namespace traits = ros::message_traits;
-    messages_->read(entry, content_);
+    messages_.read(entry, content_);
     if (digest != nullptr) {
       digest->add(content_.data(), content_.size());
     }
@@ -53,7 +53,7 @@ class StoredMessages {
   void upgrade(std::uint32_t connection, const std::string& definition);
 
   const BagIndex* index_;
-  std::unique_ptr<BagMessages> messages_;
+  BagMessages messages_;
   std::map<std::uint32_t, MessageUpgrade> upgrades_;  // by connection
   std::vector<std::uint8_t> content_;
 };

@@ -39,13 +39,8 @@ constexpr char kOtherCounts[] = "its counts do not fit its event types";
 /// The messages of a model file.
 class ModelMessages {
  public:
-  explicit ModelMessages(std::string path) : path_(std::move(path)) {
-    std::optional<BagIndex> index = readIndexOfFormat2(path_);
-    if (!index) {
-      throw ModelFileError(path_ + ": not a model file");
-    }
-    index_ = std::move(*index);
-    messages_ = std::make_unique<StoredMessages>(path_, index_, kLargestChunk);
+  explicit ModelMessages(const std::string& path)
+      : path_(path), index_(readBagIndex(path)), messages_(path, index_, kLargestChunk) {
     readDigests();
   }
 
@@ -68,7 +63,7 @@ class ModelMessages {
     for (const BagIndexEntry& entry : index_.entries) {
       const Connection& connection = index_.connections[entry.connection];
       if (connection.topic == topic && holds<Message>(connection)) {
-        visit(messages_->read<Message>(entry, &digest));
+        visit(messages_.read<Message>(entry, &digest));
         ++number;
       }
     }
@@ -110,7 +105,7 @@ class ModelMessages {
 
   std::string path_;
   BagIndex index_;
-  std::unique_ptr<StoredMessages> messages_;
+  StoredMessages messages_;
   std::map<std::string, std::uint64_t> digests_;  // by topic; none: the file has none
 };
 

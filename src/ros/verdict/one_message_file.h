@@ -62,13 +62,12 @@ std::optional<Message> readOneMessage(const OneMessageFile& of, const std::strin
     check(boost::filesystem::is_regular_file(path, error) &&
               boost::filesystem::file_size(path, error) <= of.most_bytes,
           "it is no such file");
-    const std::optional<BagIndex> index = readIndexOfFormat2(path);
-    check(index.has_value(), "it is no bag");
-    checkedVersion(path, *index, of.kind);
-    StoredMessages messages(path, *index, of.most_bytes);
+    const BagIndex index = readBagIndex(path);
+    checkedVersion(path, index, of.kind);
+    StoredMessages messages(path, index, of.most_bytes);
     std::optional<Message> found;
-    for (const BagIndexEntry& entry : index->entries) {
-      if (holds<Message>(index->connections[entry.connection])) {
+    for (const BagIndexEntry& entry : index.entries) {
+      if (holds<Message>(index.connections[entry.connection])) {
         check(!found, "it holds several of them");
         found = messages.read<Message>(entry);
       }

@@ -234,44 +234,5 @@ TEST_F(BadBagsTest, TopicsThatNoNodeCanSubscribeToAreLeftOutAndNamed) {
   EXPECT_TRUE(events_.empty());
 }
 
-TEST_F(BadBagsTest, AFormerBagIsCheckedBeforeRosbagReadsIt) {
-  const MemoryLimit limit;
-  const std::string whole = bag_bytes::formerBag();
-  rules_.source = EncodingRules::Source::kNone;
-  EXPECT_EQ(errorOf(whole), "");
-  EXPECT_EQ(events_.size(), 3U);
-  // A fuzzer's: rosbag reads over the end of a header that the file's position of the index, or
-  // the index, makes it see in the middle of a record.
-  const std::size_t index_pos = whole.find("index_pos=") + 10;
-  const std::size_t last_entry = whole.size() - sizeof(std::uint64_t);
-  const std::vector<std::size_t> records = bag_bytes::boundaries(whole);
-  for (std::uint64_t position = 0; position < whole.size() + 20; ++position) {
-    if (std::find(records.begin(), records.end(), position) != records.end()) {
-      continue;
-    }
-    for (const std::size_t place : {index_pos, last_entry}) {
-      std::string bytes = whole;
-      bytes.replace(place, sizeof position, bytesOf(position));
-      EXPECT_TRUE(has(errorOf(bytes), position == 0 && place == index_pos
-                                          ? "has no index"
-                                          : "its index points at no record"))
-          << position;
-    }
-  }
-  std::string other_type = whole;
-  const std::size_t definition = records[1];
-  other_type.insert(records[2], whole.substr(definition, records[2] - definition));
-  other_type.replace(other_type.find("std_msgs/String", records[2]), 15, "std_msgs/Binary");
-  EXPECT_TRUE(has(errorOf(other_type), "the topic '/a' is there twice")) << errorOf(other_type);
-  std::string other_topic = whole;
-  other_topic.replace(whole.rfind("topic=/a"), 8, "topic=/A");
-  EXPECT_TRUE(has(errorOf(other_topic), "messages without a connection"));
-  for (std::size_t at = 13; at + 4 < whole.size(); ++at) {
-    std::string bytes = whole;
-    bytes.replace(at, 4, bytesOf(0x7FFFFFFFU));
-    EXPECT_FALSE(has(errorOf(bytes), "memory")) << at;
-  }
-}
-
 }  // namespace
 }  // namespace self_awareness::ros1

@@ -149,31 +149,4 @@ struct Parts {
   std::string bag() const { return bag({indexedChunk()}); }
 };
 
-/// Three messages /a, one a second, in format 1.2, which rosbag no longer writes.
-inline std::string formerBag() {
-  const std::string start = record({{"op", "\x03"}, {"index_pos", bytesOf(std::uint64_t{0})}}, "");
-  const std::size_t first = std::string("#ROSBAG V1.2\n").size() + start.size();
-  std::string messages = record({{"op", "\x01"},
-                                 {"topic", "/a"},
-                                 {"md5", "992ce8a1687cec8c8bd883ec73ca41d1"},
-                                 {"type", "std_msgs/String"},
-                                 {"def", "string data\n"}},
-                                "");
-  std::string index;
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    // The index points at the definition before the first message.
-    const std::uint64_t place = first + (i == 0 ? 0 : messages.size());
-    index += bytesOf(100 + i) + bytesOf(std::uint32_t{0}) + bytesOf(place);
-    messages += record({{"op", "\x02"}, {"topic", "/a"}}, block(std::string(1, "xyz"[i])));
-  }
-  const std::uint64_t index_pos = first + messages.size();
-  return "#ROSBAG V1.2\n" + record({{"op", "\x03"}, {"index_pos", bytesOf(index_pos)}}, "") +
-         messages +
-         record({{"op", "\x04"},
-                 {"topic", "/a"},
-                 {"ver", bytesOf(std::uint32_t{0})},
-                 {"count", bytesOf(std::uint32_t{3})}},
-                index);
-}
-
 }  // namespace self_awareness::ros1::bag_bytes

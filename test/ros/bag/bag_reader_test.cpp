@@ -268,24 +268,6 @@ TEST_F(BagReaderTest, ChunksThatTakeTurnsAreUnpackedOnce) {
             4 * static_cast<double>(fs::file_size(path("turns.bag"))));
 }
 
-TEST_F(BagReaderTest, ABagOfTheFormerFormatIsLeftToRosbag) {
-  const std::string bag = path("former.bag");
-  writeFile(bag, bag_bytes::formerBag());
-  const BagSummary summary = BagReader(bag).summary();
-  EXPECT_EQ(summary.messages, 3U);
-  EXPECT_EQ(summary.start, 100 * core::kNanosecondsPerSecond);
-  EXPECT_FALSE(summary.has_sources);
-  rules_.source = EncodingRules::Source::kNone;
-  rules_.type_fields = {{"std_msgs/String", "data"}};
-  std::string seen;
-  for (const core::Event& event : read(bag)) {
-    seen += toString(vocabulary_.at(event.id)) + '\n';
-  }
-  EXPECT_EQ(seen,
-            "- /a std_msgs/String[data=x]\n- /a std_msgs/String[data=y]\n"
-            "- /a std_msgs/String[data=z]\n");
-}
-
 TEST_F(BagReaderTest, ContentIsReadWhereTheEncodingNamesAField) {
   rules_.type_fields = {{"std_msgs/String", "data"}};
   const std::vector<core::Event> events = read(writeBag("a.bag", rosbag::compression::LZ4));

@@ -16,7 +16,7 @@
 #include "../../in_folder.h"
 #include "../../problem.h"
 #include "../serialized.h"
-#include "ros/bag/bag_span.h"
+#include "ros/bag/open_bag.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 
@@ -163,6 +163,7 @@ TEST_F(RecordingFilesTest, FilesOfOtherFormatsAreNamedByTheirBeginning) {
        "7zXZ" +
            zero + "...",
        "compressed by xz; unpack it first"},
+      {"#ROSBAG V1.2\n...", "of the format before 2010; write it anew with: rosbag filter"},
       {"", "the file is empty"},
       {"what is this?", "of no format that is known here"}};
   for (const auto& [beginning, said] : formats) {
