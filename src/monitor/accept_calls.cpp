@@ -9,10 +9,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "ros/now.h"
+#include "diagnostics.h"
+#include "node/live_source.h"
+#include "parameters.h"
 #include "ros/text.h"
-#include "ros/verdict/accepted_file.h"
+#include "ros/verdict/kept_files.h"
 #include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/ros_time.h"
+#include "session.h"
 
 namespace self_awareness {
 namespace {
@@ -89,7 +93,7 @@ void AcceptCalls::tell(const std::vector<core::EventType>& types,
 }
 
 bool AcceptCalls::onAccept(Call& call) {
-  if (!asksWhat(call.getRequest()) && !calls_.mayServe("accept", call, steadyNow())) {
+  if (!asksWhat(call.getRequest()) && !calls_.mayServe("accept", call, ros1::steadyNow())) {
     return true;
   }
   // What does not belong in a text takes three bytes, and a longer name could not be read again.
@@ -184,6 +188,51 @@ void AcceptCalls::write() {
                  ros1::writeAccepted(accepted, path);
                  *done = true;
                }});
+}
+
+AcceptService::AcceptService(OperatorCalls& calls, Host& host,
+                             std::function<const self_awareness::Incidents&()> incidents)
+    : calls_(calls),
+      host_(host),
+      incidents_(std::move(incidents)),
+      accepts_(calls_, {[this] { return acceptable(); },
+                        [this](const std::string& caller) { onAccepted(caller); }}) {}
+
+std::vector<ros::ServiceServer> AcceptService::advertise(ros::NodeHandle& private_node_handle) {
+  return {accepts_.advertise(private_node_handle)};
+}
+
+void AcceptService::onStart(const Session& /*session*/, const std::string& path) {
+  accepts_.read(path);
+  host_.session()->accept(accepts_.accepted());
+}
+
+void AcceptService::onReport(MonitorState& state) {
+  state.accept_error = accepts_.error();
+  if (host_.session() != nullptr) {
+    accepts_.tell(host_.session()->types(), state.communication);
+  }
+}
+
+std::optional<Acceptable> AcceptService::acceptable() {
+  Session* const session = host_.session();
+  if (session == nullptr || host_.parameters().method != MonitorParameters::Method::kEvidence) {
+    return std::nullopt;
+  }
+  return Acceptable{host_.alarm().standing(),      incidents_(),        session->vocabulary(),
+                    session->detector().unknown(), *session->encoder(), host_.live().now()};
+}
+
+void AcceptService::onAccepted(const std::string& caller) {
+  Session& session = *host_.session();
+  session.accept(accepts_.accepted());
+  const std::optional<core::Alarm>& stands = host_.alarm().standing();
+  if (stands && accepts_.covers(*stands, session.vocabulary())) {
+    calls_.record("accept", caller, ros1::wallNow());
+    session.detector().clearAlarm();
+    host_.standDown("accepted, by " + caller);
+  }
+  host_.report();
 }
 
 }  // namespace self_awareness

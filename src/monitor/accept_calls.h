@@ -14,8 +14,10 @@
 #include "accept_request.h"
 #include "node/file_writer.h"
 #include "operator_calls.h"
+#include "part.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/Accept.h"
+#include "self_awareness/Incidents.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/alarm.h"
@@ -89,6 +91,31 @@ class AcceptCalls {
   core::Acceptances accepted_;
   Written written_;
   FileWriter writer_;
+};
+
+/// Has the model at work judge by what operators accept (AcceptCalls).
+class AcceptService : public Part {
+ public:
+  /// @param calls admits calls
+  /// @param incidents that a call may refer to
+  AcceptService(OperatorCalls& calls, Host& host,
+                std::function<const self_awareness::Incidents&()> incidents);
+
+  std::vector<ros::ServiceServer> advertise(ros::NodeHandle& private_node_handle) override;
+  void onStart(const Session& session, const std::string& path) override;
+  void onReport(MonitorState& state) override;
+  void finish() override { accepts_.finish(); }
+
+ private:
+  /// What ~accept may refer to; none: there is no model, or it is the paper's detector that
+  /// judges.
+  std::optional<Acceptable> acceptable();
+  void onAccepted(const std::string& caller);
+
+  OperatorCalls& calls_;
+  Host& host_;
+  const std::function<const self_awareness::Incidents&()> incidents_;
+  AcceptCalls accepts_;
 };
 
 }  // namespace self_awareness

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "diagnostics.h"
-#include "ros/verdict/standing_alarm.h"
+#include "ros/verdict/kept_files.h"
 #include "self_awareness/ros/ros_time.h"
 #include "session.h"
 

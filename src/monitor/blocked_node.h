@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "host.h"
 #include "node/discovery.h"
 #include "part.h"
 #include "self_awareness/core/stream/event.h"

@@ -2,10 +2,9 @@
 
 #include <utility>
 
-#include "node/clock_status.h"
-#include "node/unheard_status.h"
-#include "ros/now.h"
+#include "node/node_status.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/ros_time.h"
 #include "session.h"
 
 namespace self_awareness {
@@ -33,11 +32,11 @@ Diagnostics::Diagnostics(ros::NodeHandle node_handle, const std::string& name,
       hardware_id_(hardware_id),
       component_statuses_(component_statuses),
       round_(bytes_per_second),
-      published_at_(steadyNow()),
+      published_at_(ros1::steadyNow()),
       publisher_(node_handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)) {}
 
 void Diagnostics::publish(MonitorState state) {
-  const std::int64_t now = steadyNow();
+  const std::int64_t now = ros1::steadyNow();
   const double elapsed = core::toSeconds(now - std::exchange(published_at_, now));
   state.communication.lists = lists_.next(allLists(state), elapsed);
   ros1::DiagnosticStatuses statuses(name_, hardware_id_, state.ros_now);

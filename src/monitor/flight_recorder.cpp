@@ -72,7 +72,7 @@ void FlightRecorder::onCut(Cut /*why*/) {
 void FlightRecorder::onVerdict(core::Verdict& verdict, ros1::Circumstances& circumstances) {
   if (verdict.alarm && !stands_ && enabled()) {
     if (!pending_) {
-      pending_ = Pending{newPath(RecorderFolder::Cause::kAlarm), now_ + after_};
+      pending_ = Pending{newPath("alarm"), now_ + after_};
     }
     kept_ = pending_->path;
   }
@@ -113,7 +113,7 @@ std::optional<std::string> FlightRecorder::dump() {
   if (!heardAnything()) {
     return std::nullopt;
   }
-  std::string dumped = newPath(RecorderFolder::Cause::kDump);
+  std::string dumped = newPath("dump");
   write(dumped);
   return dumped;
 }
@@ -125,7 +125,7 @@ void FlightRecorder::finish() {
   if (pending_) {
     write(std::exchange(pending_, std::nullopt)->path);
   } else if (stands_ && heardAnything()) {
-    write(newPath(RecorderFolder::Cause::kShutdown));
+    write(newPath("shutdown"));
   }
   writer_.finish();
 }
@@ -158,9 +158,8 @@ void FlightRecorder::forgetOldest() {
   parts_.pop_front();
 }
 
-std::string FlightRecorder::newPath(RecorderFolder::Cause cause) {
-  const auto now = static_cast<std::int64_t>(ros::WallTime::now().toNSec());
-  named_at_ = std::max(now, named_at_ + kNameStep);
+std::string FlightRecorder::newPath(const std::string& cause) {
+  named_at_ = std::max(ros1::wallNow(), named_at_ + kNameStep);
   return folder_.pathOf(cause, named_at_);
 }
 
@@ -176,7 +175,7 @@ void FlightRecorder::write(const std::string& path) {
   writer_.add({path, bytes_, [folder, recording, kept = kept_](const std::string& file) {
                  folder.create();
                  ros1::writeLog(recording, file);
-                 folder.removeOldest(kept);
+                 folder.makeRoom(kept);
                }});
 }
 

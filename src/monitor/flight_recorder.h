@@ -16,13 +16,12 @@
 #include "node/file_writer.h"
 #include "part.h"
 #include "recorder_folder.h"
-#include "ros/bag/recorded_log.h"
 #include "self_awareness/EventLog.h"
 #include "self_awareness/EventType.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/stream/waiting.h"
-#include "self_awareness/ros/bag/event_log_packer.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
 
 namespace self_awareness {
 
@@ -93,7 +92,7 @@ class FlightRecorder : public Part {
   void forgetOldest();
   bool heardAnything() const { return first_.has_value(); }
   /// Path of a new file; no two have the same.
-  std::string newPath(RecorderFolder::Cause cause);
+  std::string newPath(const std::string& cause);
   /// Hands all that is kept to the writer.
   void write(const std::string& path);
 

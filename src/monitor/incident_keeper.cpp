@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "diagnostics.h"
-#include "ros/verdict/incidents_file.h"
+#include "ros/verdict/kept_files.h"
 #include "self_awareness/ros/ros_time.h"
 #include "session.h"
 

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
-#include <regex>
+#include <limits>
 #include <utility>
 
 #include "diagnostics.h"
 #include "recorder_folder.h"
-#include "ros/now.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
+#include "self_awareness/ros/ros_time.h"
 #include "session.h"
 
 namespace self_awareness {
@@ -17,30 +17,6 @@ namespace {
 namespace filesystem = boost::filesystem;
 
 constexpr char kBeside[] = ".kept";
-
-/// "normal_2026-11-22-05-10-33.123.bag": names sort as they were given.
-std::string nameOf(std::int64_t wall_time) {
-  return "normal_" + timeInFileName(wall_time) + ".bag";
-}
-
-/// Removes the oldest logs until the rest is within the bound; the newest one stays.
-void removeOldest(const std::string& folder, std::uint64_t most_bytes) {
-  static const std::regex pattern("normal_[-0-9.]+\\.bag");
-  std::vector<filesystem::path> files;
-  std::uint64_t bytes = 0;
-  for (const filesystem::directory_entry& entry : filesystem::directory_iterator(folder)) {
-    if (std::regex_match(entry.path().filename().string(), pattern) &&
-        filesystem::is_regular_file(entry.path())) {
-      files.push_back(entry.path());
-      bytes += filesystem::file_size(entry.path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  for (std::size_t k = 0; k + 1 < files.size() && bytes > most_bytes; ++k) {
-    bytes -= filesystem::file_size(files[k]);
-    filesystem::remove(files[k]);
-  }
-}
 
 }  // namespace
 
@@ -128,14 +104,15 @@ void KeptLogs::write() {
   log.graph = source.graph;
   log.parts = parts_;
   ++report_.kept;
-  named_at_ = std::max(wallNow(), named_at_ + kNameStep);
+  named_at_ = std::max(ros1::wallNow(), named_at_ + kNameStep);
   writer_.add(
-      {folder_ + "/" + nameOf(named_at_), bytes_,
+      {folder_ + "/normal_" + timeInFileName(named_at_) + ".bag", bytes_,
        [log = std::move(log), folder = folder_,
         most = static_cast<std::uint64_t>(parameters_.disk) * kMegabyte](const std::string& file) {
          filesystem::create_directories(folder);
          ros1::writeLog(log, file);
-         removeOldest(folder, most);
+         removeOldest(folder, "normal_([-0-9.]+)\\.bag", std::numeric_limits<std::size_t>::max(),
+                      most);
        }});
 }
 

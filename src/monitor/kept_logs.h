@@ -10,13 +10,12 @@
 
 #include "node/file_writer.h"
 #include "part.h"
-#include "ros/bag/recorded_log.h"
 #include "self_awareness/EventLog.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/lasting.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/stream/waiting.h"
-#include "self_awareness/ros/bag/event_log_packer.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
 
 namespace self_awareness {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "ros/log_line.h"
+#include "ros/bag/log_lines.h"
 #include "ros/text.h"
 
 namespace self_awareness {

@@ -6,9 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "node/load.h"
-#include "ros/now.h"
-#include "ros/verdict/standing_alarm.h"
+#include "node/processor_watch.h"
+#include "ros/verdict/kept_files.h"
 #include "self_awareness/Incidents.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/ros/model/model_file.h"
@@ -20,19 +19,19 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                  const std::string& name)
     : private_node_handle_(private_node_handle),
       parameters_(MonitorParameters::load(private_node_handle)),
-      announcer_({[this](const self_awareness::SelfAwareness& status) {
-                    status_publisher_.publish(status);
-                  },
-                  [this](const self_awareness::SelfAwareness& alarm) {
-                    alarm_publisher_.publish(alarm);
-                    all(&Part::onAlarm, announcer_.alarm());
-                  },
-                  [this] { live_->report(); }}),
+      alarm_({[this](const self_awareness::SelfAwareness& status) {
+                status_publisher_.publish(status);
+              },
+              [this](const self_awareness::SelfAwareness& alarm) {
+                alarm_publisher_.publish(alarm);
+                all(&Part::onAlarm, alarm_);
+              },
+              [this] { live_->report(); }}),
       reports_(*this, node_handle, private_node_handle_, name),
       operators_(calls_, *this, [this] { return reload(); }),
       recorder_(parameters_.recorder, [this] { return source(); }),
       kept_logs_(
-          parameters_.kept_logs, [this] { return source(); }, wallNow()),
+          parameters_.kept_logs, [this] { return source(); }, ros1::wallNow()),
       not_heard_(*this),
       blocked_(*this, [this](std::vector<std::string> nodes) { live_->ask(std::move(nodes)); }),
       restarts_(*this),
@@ -91,7 +90,7 @@ void Monitor::load(const std::string& path) {
   all(&Part::onCut, Cut::kOtherModel);
   parameters_.model = path;
   session_ = std::move(session);
-  announcer_.forgetWindow();
+  alarm_.forgetWindow();
   all(&Part::onStart, *session_, path);
   live_->setWanted(session_->wanted(ros::this_node::getName(), parameters_.live.poll_interval));
   ROS_INFO("model %s: %zu event types, %s", path.c_str(), session_->types().size(),
@@ -123,7 +122,7 @@ void Monitor::resume() {
     const auto suspects = ros1::fromMessages(standing->alarm.suspects, session_->vocabulary());
     session_->detector().resume(suspects);
     ROS_WARN("an alarm stood when this monitor ended: it stands until its cause is over");
-    announcer_.resume(*standing, suspects);
+    alarm_.resume(*standing, suspects);
   }
 }
 
@@ -183,7 +182,7 @@ void Monitor::onSenders(const core::Senders& senders) {
 }
 
 void Monitor::onMasterRestart(std::int64_t /*now*/) {
-  kept_logs_.onRobotStart(wallNow());
+  kept_logs_.onRobotStart(ros1::wallNow());
 }
 
 void Monitor::onTick(std::int64_t now) {
@@ -191,7 +190,7 @@ void Monitor::onTick(std::int64_t now) {
   if (session_) {
     session_->detector().advance(now - kGrace);
   }
-  all(&Part::onTick, Moment{now, steadyNow(), now - kGrace});
+  all(&Part::onTick, Moment{now, ros1::steadyNow(), now - kGrace});
 }
 
 void Monitor::restart() {
@@ -209,7 +208,7 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   if (verdict.alarm || verdict.suspicion) {
     notNormal(verdict.alarm ? "an alarm" : "a suspicion");
   }
-  announcer_.add(said, session_->vocabulary(), session_->window(), circumstances);
+  alarm_.add(said, session_->vocabulary(), session_->window(), circumstances);
 }
 
 std::string Monitor::mutedBy(const std::string& component) const {
@@ -217,7 +216,7 @@ std::string Monitor::mutedBy(const std::string& component) const {
 }
 
 void Monitor::standDown(const std::string& message) {
-  announcer_.standDown(message, live_->now());
+  alarm_.standDown(message, live_->now());
 }
 
 void Monitor::notNormal(const std::string& why) {

@@ -10,11 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "accept_service.h"
+#include "accept_calls.h"
 #include "alarm_keeper.h"
 #include "blocked_node.h"
 #include "flight_recorder.h"
-#include "host.h"
 #include "incident_keeper.h"
 #include "kept_logs.h"
 #include "log_quotes.h"
@@ -28,7 +27,7 @@
 #include "part.h"
 #include "reports.h"
 #include "restart_watch.h"
-#include "ros/verdict/announcer.h"
+#include "ros/verdict/alarm_state.h"
 #include "session.h"
 
 namespace self_awareness {
@@ -161,7 +160,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   Session* session() override { return session_.get(); }
   const MonitorParameters& parameters() const override { return parameters_; }
   const LiveSource& live() const override { return *live_; }
-  const ros1::AlarmState& alarm() const override { return announcer_.alarm(); }
+  const ros1::AlarmState& alarm() const override { return alarm_; }
   std::string mutedBy(const std::string& component) const override;
   void standDown(const std::string& message) override;
   void nearMiss(const core::Alarm& alarm) override { incidents_.addNearMiss(alarm); }
@@ -196,7 +195,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   ros::Publisher incidents_publisher_;
   std::vector<ros::ServiceServer> services_;
   std::unique_ptr<Session> session_;  // none: no model
-  ros1::Announcer announcer_;
+  ros1::AlarmState alarm_;
 
   OperatorCalls calls_;
   Reports reports_;

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include "diagnostics.h"
-#include "ros/now.h"
 #include "ros/text.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/ros_time.h"
 #include "session.h"
 
 namespace self_awareness {
@@ -33,7 +33,7 @@ std::string what(const core::Mute& mute) {
 
 /// When it ends, by the clock on the wall.
 std::string until(const core::Mute& mute) {
-  return "until " + ros1::utc(wallNow() + mute.until - steadyNow()) +
+  return "until " + ros1::utc(ros1::wallNow() + mute.until - ros1::steadyNow()) +
          (mute.until_over ? " or it is over" : "");
 }
 
@@ -163,14 +163,14 @@ std::string MuteCalls::ofComponent(const std::string& component) const {
 }
 
 bool MuteCalls::onMute(Call& call) {
-  if (calls_.mayServe("mute", call, steadyNow())) {
+  if (calls_.mayServe("mute", call, ros1::steadyNow())) {
     call.getResponse() = serve(call.getRequest(), call.getCallerName());
   }
   return true;
 }
 
 bool MuteCalls::onMaintenance(MaintenanceCall& call) {
-  if (calls_.mayServe("maintenance", call, steadyNow())) {
+  if (calls_.mayServe("maintenance", call, ros1::steadyNow())) {
     Mute::Request all;
     all.component = "*";
     all.duration = call.getRequest().duration;
@@ -202,7 +202,7 @@ Mute::Response MuteCalls::serve(const Mute::Request& request, const std::string&
                        std::to_string(static_cast<int>(kLongest)) + " s, or 0 to take a mute back";
   } else {
     core::Mute timed = mute;
-    timed.until = steadyNow() + std::llround(duration * 1e9);
+    timed.until = ros1::steadyNow() + std::llround(duration * 1e9);
     const core::Mute* kept = mutes_.add(timed);
     response.success = kept != nullptr;
     response.message = response.success

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "host.h"
 #include "operator_calls.h"
 #include "part.h"
 #include "self_awareness/Maintenance.h"

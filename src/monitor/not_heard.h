@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "host.h"
 #include "part.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/acceptance.h"

@@ -4,8 +4,8 @@
 
 #include "diagnostics.h"
 #include "parameters.h"
-#include "ros/now.h"
 #include "ros/text.h"
+#include "self_awareness/ros/ros_time.h"
 #include "session.h"
 
 namespace self_awareness {
@@ -27,13 +27,13 @@ void OperatorServices::onReport(MonitorState& state) {
 void OperatorServices::standDown(const Call& call, const std::string& service,
                                  const std::string& message) {
   if (host_.alarm().stands()) {
-    calls_.record(service, call.getCallerName(), wallNow());
+    calls_.record(service, call.getCallerName(), ros1::wallNow());
   }
   host_.standDown(message);
 }
 
 bool OperatorServices::onReset(Call& call) {
-  if (!calls_.mayServe("reset", call, steadyNow())) {
+  if (!calls_.mayServe("reset", call, ros1::steadyNow())) {
     return true;
   }
   Session* const session = host_.session();
@@ -49,7 +49,7 @@ bool OperatorServices::onReset(Call& call) {
 }
 
 bool OperatorServices::onClear(Call& call) {
-  if (calls_.mayServe("clear", call, steadyNow())) {
+  if (calls_.mayServe("clear", call, ros1::steadyNow())) {
     const bool stood = host_.alarm().stands();
     call.getResponse().success = 1U;
     call.getResponse().message = stood ? "the alarm is cleared" : "there is no alarm";
@@ -62,7 +62,7 @@ bool OperatorServices::onClear(Call& call) {
 }
 
 bool OperatorServices::onReload(Call& call) {
-  if (!calls_.mayServe("reload", call, steadyNow())) {
+  if (!calls_.mayServe("reload", call, ros1::steadyNow())) {
     return true;
   }
   const std::string error = reload_();

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "host.h"
 #include "operator_calls.h"
 #include "part.h"
 

@@ -17,19 +17,6 @@ namespace {
 
 namespace filesystem = boost::filesystem;
 
-const char* nameOf(RecorderFolder::Cause cause) {
-  switch (cause) {
-    case RecorderFolder::Cause::kAlarm:
-      return "alarm";
-    case RecorderFolder::Cause::kDump:
-      return "dump";
-    case RecorderFolder::Cause::kShutdown:
-      return "shutdown";
-  }
-  throw std::logic_error("no such cause");
-}
-
-constexpr std::int64_t kMillisecond = 1000000;  // names tell milliseconds [ns]
 constexpr char kRosHome[] = "$ROS_HOME/";
 constexpr char kName[] = "$NAME";
 
@@ -64,22 +51,6 @@ struct RecorderFile {
   std::uint64_t bytes;
 };
 
-/// The oldest first.
-std::vector<RecorderFile> filesIn(const filesystem::path& folder) {
-  static const std::regex pattern("(?:alarm|dump|shutdown)_([-0-9.]+)\\.bag");
-  std::vector<RecorderFile> files;
-  for (const filesystem::directory_entry& entry : filesystem::directory_iterator(folder)) {
-    std::smatch match;
-    const std::string name = entry.path().filename().string();
-    if (std::regex_match(name, match, pattern) && filesystem::is_regular_file(entry.path())) {
-      files.push_back({match[1], entry.path(), filesystem::file_size(entry.path())});
-    }
-  }
-  std::sort(files.begin(), files.end(),
-            [](const RecorderFile& a, const RecorderFile& b) { return a.time < b.time; });
-  return files;
-}
-
 }  // namespace
 
 RecorderFolder::RecorderFolder(const std::string& path, const std::string& name,
@@ -89,13 +60,13 @@ RecorderFolder::RecorderFolder(const std::string& path, const std::string& name,
       most_files_(most_files),
       most_bytes_(most_bytes) {}
 
-std::string RecorderFolder::pathOf(Cause cause, std::int64_t wall_time) const {
+std::string RecorderFolder::pathOf(const std::string& cause, std::int64_t wall_time) const {
   boost::system::error_code error;
-  std::string path = nameOfFile(cause, wall_time);
-  while (filesystem::exists(path, error)) {
-    wall_time += kMillisecond;
-    path = nameOfFile(cause, wall_time);
-  }
+  std::string path;
+  do {
+    path = path_ + "/" + cause + "_" + timeInFileName(wall_time) + ".bag";
+    wall_time += kNameStep;
+  } while (filesystem::exists(path, error));
   return path;
 }
 
@@ -107,12 +78,8 @@ std::string timeInFileName(std::int64_t wall_time) {
   std::strftime(time, sizeof time, "%Y-%m-%d-%H-%M-%S", &utc);
   char milliseconds[8];
   std::snprintf(milliseconds, sizeof milliseconds, ".%03d",
-                static_cast<int>(wall_time % core::kNanosecondsPerSecond / kMillisecond));
+                static_cast<int>(wall_time % core::kNanosecondsPerSecond / kNameStep));
   return std::string(time) + milliseconds;
-}
-
-std::string RecorderFolder::nameOfFile(Cause cause, std::int64_t wall_time) const {
-  return path_ + "/" + nameOf(cause) + "_" + timeInFileName(wall_time) + ".bag";
 }
 
 void RecorderFolder::create() const {
@@ -127,22 +94,31 @@ void RecorderFolder::create() const {
   }
 }
 
-void RecorderFolder::removeOldest(const std::string& kept) const {
-  std::vector<RecorderFile> files = filesIn(path_);
-  std::size_t left = files.size();
+void RecorderFolder::makeRoom(const std::string& kept) const {
+  removeOldest(path_, "(?:alarm|dump|shutdown)_([-0-9.]+)\\.bag", most_files_, most_bytes_, kept);
+}
+
+void removeOldest(const std::string& folder, const std::string& names, std::size_t most_files,
+                  std::uint64_t most_bytes, const std::string& kept) {
+  const std::regex pattern(names);
+  std::vector<RecorderFile> files;
   std::uint64_t bytes = 0;
-  for (const RecorderFile& file : files) {
-    bytes += file.bytes;
-  }
-  for (std::size_t i = 0; i + 1 < files.size(); ++i) {  // the newest one stays
-    const RecorderFile& file = files[i];
-    if (left <= most_files_ && bytes <= most_bytes_) {
-      break;
+  for (const filesystem::directory_entry& entry : filesystem::directory_iterator(folder)) {
+    std::smatch match;
+    const std::string name = entry.path().filename().string();
+    if (std::regex_match(name, match, pattern) && filesystem::is_regular_file(entry.path())) {
+      files.push_back({match[1], entry.path(), filesystem::file_size(entry.path())});
+      bytes += files.back().bytes;
     }
-    if (file.path.string() != kept) {
-      filesystem::remove(file.path);
+  }
+  std::sort(files.begin(), files.end(),
+            [](const RecorderFile& a, const RecorderFile& b) { return a.time < b.time; });
+  std::size_t left = files.size();
+  for (std::size_t i = 0; i + 1 < files.size() && (left > most_files || bytes > most_bytes); ++i) {
+    if (files[i].path.string() != kept) {
+      filesystem::remove(files[i].path);
       --left;
-      bytes -= file.bytes;
+      bytes -= files[i].bytes;
     }
   }
 }

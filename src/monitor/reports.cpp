@@ -5,11 +5,10 @@
 #include <ctime>
 #include <utility>
 
-#include "node/clock_status.h"
 #include "node/live_source.h"
+#include "node/node_status.h"
 #include "parameters.h"
 #include "ros/nothing_heard.h"
-#include "ros/now.h"
 #include "ros/text.h"
 #include "ros/verdict/components.h"
 #include "self_awareness/Components.h"
@@ -36,14 +35,15 @@ Reports::Reports(Host& host, ros::NodeHandle& node_handle, ros::NodeHandle& priv
 ros1::HeardTally::Moment Reports::momentNow() {
   timespec cpu{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
-  return {rosNow(), steadyNow(), cpu.tv_sec * core::kNanosecondsPerSecond + cpu.tv_nsec};
+  return {ros1::rosNow(), ros1::steadyNow(),
+          cpu.tv_sec * core::kNanosecondsPerSecond + cpu.tv_nsec};
 }
 
 void Reports::onStart(const Session& session, const std::string& /*path*/) {
   model_error_.clear();
   mode_.clear();
   heard_.setTypes(session.types());
-  started_at_ = steadyNow();
+  started_at_ = ros1::steadyNow();
 }
 
 void Reports::onCut(Cut why) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "diagnostics.h"
-#include "host.h"
 #include "part.h"
 #include "ros/verdict/heard_tally.h"
 

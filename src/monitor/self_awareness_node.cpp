@@ -2,7 +2,6 @@
 #include <ros/this_node.h>
 
 #include "monitor.h"
-#include "node/command_line.h"
 #include "node/run_node.h"
 
 namespace {

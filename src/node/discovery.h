@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "ros/live/node_call.h"
+#include "ros/live/slave_api.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/guarded.h"

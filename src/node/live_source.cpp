@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "ros/now.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness {
 
@@ -11,7 +11,7 @@ LiveSource::LiveSource(ros::CallbackQueue& queue, const ros::NodeHandle& node_ha
                        Listener& listener)
     : listener_(listener),
       period_(parameters.diagnostic_period),
-      reported_at_(steadyNow()),
+      reported_at_(ros1::steadyNow()),
       timer_(node_handle.createSteadyTimer(tick_, &LiveSource::onTick, this)),
       live_events_(node_handle, parameters.queue_size, handlers()),
       discovery_(live_events_.arrivals(), parameters.subscribe, parameters.poll_interval,
@@ -53,7 +53,7 @@ void LiveSource::setWanted(Wanted wanted) {
 }
 
 void LiveSource::report() {
-  reported_at_ = steadyNow();
+  reported_at_ = ros1::steadyNow();
   listener_.onReport();
 }
 
@@ -77,20 +77,20 @@ void LiveSource::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   }
   tellWaiting(now);  // before windows are judged that end now
   listener_.onTick(now);
-  if (core::toSeconds(steadyNow() - reported_at_) >= period_) {
+  if (core::toSeconds(ros1::steadyNow() - reported_at_) >= period_) {
     live_events_.forgetClosedConnections();
     report();
   }
 }
 
 void LiveSource::tellWaiting(std::int64_t now) {
-  if (const auto waiting = processor_watch_.look(now, steadyNow(), tick_.toNSec())) {
+  if (const auto waiting = processor_watch_.look(now, ros1::steadyNow(), tick_.toNSec())) {
     listener_.onWaiting(*waiting);
   }
 }
 
 std::int64_t LiveSource::now() const {
-  return contest_.timeOf(rosNow(), steadyNow());
+  return contest_.timeOf(ros1::rosNow(), ros1::steadyNow());
 }
 
 std::string LiveSource::clockRivals() const {
@@ -98,8 +98,9 @@ std::string LiveSource::clockRivals() const {
 }
 
 std::int64_t LiveSource::watchClock() {
-  const std::int64_t now = contest_.look(rosNow(), steadyNow(), ros::Time::isSimTime());
-  if (clock_watch_.look(now, steadyNow(), ros::Time::isSimTime())) {
+  const std::int64_t now =
+      contest_.look(ros1::rosNow(), ros1::steadyNow(), ros::Time::isSimTime());
+  if (clock_watch_.look(now, ros1::steadyNow(), ros::Time::isSimTime())) {
     processor_watch_.restart();
     listener_.onClockSet(now);
   } else if (clock_watch_.pause() > core::Waiting::kStoodStill + tick_.toNSec()) {

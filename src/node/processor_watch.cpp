@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -70,6 +71,17 @@ std::optional<core::Waiting> ProcessorWatch::look(std::int64_t now, std::int64_t
     return std::nullopt;
   }
   return std::exchange(stretch_, core::Waiting{now, now, 0});
+}
+
+std::string loadInWords() {
+  double load = 0;
+  if (getloadavg(&load, 1) != 1) {
+    return "";
+  }
+  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  char text[60];
+  std::snprintf(text, sizeof text, "load %.1f on %ld core%s", load, cores, cores == 1 ? "" : "s");
+  return text;
 }
 
 }  // namespace self_awareness

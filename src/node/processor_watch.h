@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 
 #include "self_awareness/core/stream/waiting.h"
 
@@ -44,5 +45,9 @@ class ProcessorWatch {
   Moment last_;
   std::optional<core::Waiting> stretch_;  // that is open; none: there was no look
 };
+
+/// The load of this machine during the last minute: "load 7.9 on 2 cores"; empty if the system
+/// does not tell.
+std::string loadInWords();
 
 }  // namespace self_awareness

@@ -11,8 +11,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <string_view>
 #include <thread>
 
+#include "self_awareness/ros/file_version.h"
 #include "self_awareness/ros/guarded.h"
 
 namespace self_awareness {
@@ -147,6 +149,18 @@ int runNode(int argc, char** argv, const std::string& name,
 
 void endNode() {
   leaving->change([](Life& life) { life.stopping = true; });
+}
+
+bool answered(int argc, char** argv, const std::string& usage) {
+  const std::string_view asked = argc > 1 ? argv[1] : "";
+  if (asked == "--version") {
+    std::printf("self_awareness %s\n", ros1::kPackageVersion);
+  } else if (asked == "--help" || asked == "-h") {
+    std::printf("%s\n", usage.c_str());
+  } else {
+    return false;
+  }
+  return true;
 }
 
 }  // namespace self_awareness

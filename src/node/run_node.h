@@ -24,4 +24,9 @@ int runNode(int argc, char** argv, const std::string& name,
 /// Ends the node soon. May be called in any thread.
 void endNode();
 
+/// Answers --help and --version of a node, at once and without a master.
+/// @param usage what --help prints
+/// @return whether the arguments asked for one of them
+bool answered(int argc, char** argv, const std::string& usage);
+
 }  // namespace self_awareness

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bindings.h"
-#include "ros/verdict/accepted_file.h"
+#include "ros/verdict/kept_files.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/verdict/acceptance.h"
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bindings.h"
-#include "ros/verdict/replayed_monitor.h"
+#include "ros/verdict/result_bag.h"
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/paper/model.h"

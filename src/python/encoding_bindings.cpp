@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bindings.h"
-#include "ros/message_check.h"
+#include "ros/check.h"
 #include "ros/text.h"
 #include "self_awareness/Encoding.h"
 #include "self_awareness/core/stream/latched.h"

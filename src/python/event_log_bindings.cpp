@@ -8,10 +8,9 @@
 #include "bindings.h"
 #include "ros/nothing_heard.h"
 #include "self_awareness/ros/bag/bag_reader.h"
-#include "self_awareness/ros/bag/bag_to_event_log.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/graph.h"
-#include "self_awareness/ros/siblings.h"
+#include "self_awareness/ros/own_output.h"
 
 namespace self_awareness::python {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "bindings.h"
-#include "self_awareness/ros/bag/read_file_version.h"
+#include "ros/bag/version_of_bag.h"
 #include "self_awareness/ros/file_version.h"
 
 namespace self_awareness::python {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bindings.h"
-#include "ros/verdict/incidents_file.h"
+#include "ros/verdict/kept_files.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/verdict/incident.h"
 #include "self_awareness/ros/ros_time.h"

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bindings.h"
-#include "ros/verdict/replayed_monitor.h"
 #include "ros/verdict/result_bag.h"
 #include "self_awareness/ros/model/model_file.h"
 

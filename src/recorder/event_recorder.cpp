@@ -10,15 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "node/clock_status.h"
 #include "node/encoding_parameters.h"
+#include "node/node_status.h"
 #include "node/parameter_reader.h"
-#include "node/unheard_status.h"
-#include "ros/now.h"
 #include "ros/text.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/output_file.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness {
 namespace {
@@ -100,7 +99,7 @@ EventRecorder::~EventRecorder() {
 void EventRecorder::finish() {
   live_->stop();
   live_->deliver();
-  end(rosNow());
+  end(ros1::rosNow());
 }
 
 void EventRecorder::onEvent(const core::Event& event) {
@@ -131,7 +130,7 @@ void EventRecorder::onClockSet(std::int64_t now) {
 
 void EventRecorder::onMasterRestart(std::int64_t now) {
   ROS_WARN("the master was restarted: the next recording is of another start of the robot");
-  robot_start_ = wallNow();
+  robot_start_ = ros1::wallNow();
   lasting_.forget();
   end(now);
 }
@@ -154,7 +153,7 @@ void EventRecorder::onTick(std::int64_t now) {
       }
     });
   }
-  const double minutes = core::toSeconds(steadyNow() - began_) / 60;
+  const double minutes = core::toSeconds(ros1::steadyNow() - began_) / 60;
   if (file_ && (minutes >= parameters_.split || !hasSpace())) {
     end(now);
     begin(now);
@@ -182,7 +181,7 @@ void EventRecorder::begin(std::int64_t now) {
     for (const core::Event& event : lasting_.at(now)) {
       packer_->add(event, vocabulary_);
     }
-    began_ = steadyNow();
+    began_ = ros1::steadyNow();
     problem_.clear();
     ROS_INFO("recording to %s", file_->log.path().c_str());
   });
@@ -238,7 +237,7 @@ bool EventRecorder::hasSpace() const {
 bool EventRecorder::onFinish(std_srvs::Trigger::Request& /*request*/,
                              std_srvs::Trigger::Response& response) {
   live_->deliver();
-  end(rosNow());
+  end(ros1::rosNow());
   finished_ = true;
   response.success = problem_.empty();
   response.message = problem_.empty() ? std::to_string(files_) + " files" : problem_;
@@ -259,7 +258,7 @@ void EventRecorder::onReport() {
                         "more than " + std::to_string(ros1::kMostEventTypes) +
                             " event types: further ones are not told apart");
   }
-  tellClock(live_->clock().standsStillFor(), rosNow(), status);
+  tellClock(live_->clock().standsStillFor(), ros1::rosNow(), status);
   tellUnheard(live_->discovery().unheard(), ros1::ListsAre::kTold, status);
   status.add("file", file_ ? file_->log.path() : "none");
   status.add("files before", files_);
@@ -268,7 +267,7 @@ void EventRecorder::onReport() {
              static_cast<double>(bytes_ + (file_ ? file_->log.size() : 0)) / kBytesOfMegabyte);
   status.add("dropped messages", live_->events().dropped());
   status.add("event types", vocabulary_.size());
-  ros1::DiagnosticStatuses statuses(ros::this_node::getName(), ros1::kNoHardware, rosNow());
+  ros1::DiagnosticStatuses statuses(ros::this_node::getName(), ros1::kNoHardware, ros1::rosNow());
   statuses.add("recording", status);
   diagnostics_.publish(statuses.message());
 }

@@ -17,7 +17,6 @@
 #include "node/run_node.h"
 #include "self_awareness/core/stream/lasting.h"
 #include "self_awareness/core/stream/vocabulary.h"
-#include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"

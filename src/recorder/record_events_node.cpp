@@ -1,7 +1,6 @@
 #include <ros/node_handle.h>
 
 #include "event_recorder.h"
-#include "node/command_line.h"
 #include "node/run_node.h"
 
 namespace {

@@ -11,14 +11,13 @@
 #include <tuple>
 #include <utility>
 
-#include "listed_field.h"
 #include "message_definition.h"
+#include "message_field.h"
 #include "name_patterns.h"
-#include "name_renames.h"
 #include "self_awareness/core/stream/latched.h"
 #include "self_awareness/core/stream/listed.h"
 #include "self_awareness/core/stream/mode.h"
-#include "self_awareness/ros/siblings.h"
+#include "self_awareness/ros/own_output.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"
 

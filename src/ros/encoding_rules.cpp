@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "name_patterns.h"
-#include "name_renames.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/encoding.h"
 #include "text.h"

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/ros/encoding.h"
+
 namespace self_awareness::ros1 {
 
 /// Regular expressions that names of topics or nodes match, in the syntax of RE2
@@ -36,6 +38,22 @@ class NamePatterns {
 
  private:
   std::vector<std::unique_ptr<const re2::RE2>> patterns_;
+};
+
+/// Replaces names of nodes and topics: what is learned on one robot is about another one that has
+/// other names (docs/robots.md).
+class NameRenames {
+ public:
+  /// @throw std::invalid_argument names the rule whose pattern is no regular expression, or whose
+  /// new name does not begin with a slash, or names groups that the pattern lacks
+  explicit NameRenames(const std::vector<Rename>& renames);
+
+  /// The name by the first rule that matches all of it; as it is if none does.
+  std::string apply(const std::string& name) const;
+
+ private:
+  NamePatterns patterns_;
+  std::vector<std::string> names_;  // by pattern
 };
 
 }  // namespace self_awareness::ros1

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-#include "self_awareness/ros/siblings.h"
+#include "self_awareness/ros/own_output.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"
 

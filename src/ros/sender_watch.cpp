@@ -4,7 +4,7 @@
 #include <array>
 #include <iterator>
 
-#include "self_awareness/ros/siblings.h"
+#include "self_awareness/ros/own_output.h"
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::ros1 {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "self_awareness/ros/message_field.h"
+#include "ros/message_field.h"
 
 using namespace self_awareness;  // NOLINT
 

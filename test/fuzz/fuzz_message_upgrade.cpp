@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "ros/message_check.h"
+#include "ros/check.h"
 #include "ros/message_upgrade.h"
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/EventLogStart.h"

@@ -2,7 +2,7 @@
 // does at its start. Only what the header promises may be thrown.
 
 #include "fuzzed_file.h"
-#include "ros/verdict/standing_alarm.h"
+#include "ros/verdict/kept_files.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 

@@ -11,11 +11,10 @@
 #include <utility>
 
 #include "bag_bytes.h"
-#include "ros/verdict/standing_alarm.h"
+#include "ros/verdict/kept_files.h"
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/core/learn.h"
 #include "self_awareness/ros/bag/bag_reader.h"
-#include "self_awareness/ros/bag/bag_to_event_log.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/model/model_file.h"
 

@@ -11,7 +11,7 @@
 #include "../await.h"
 #include "../in_folder.h"
 #include "../problem.h"
-#include "ros/verdict/accepted_file.h"
+#include "ros/verdict/kept_files.h"
 
 namespace self_awareness {
 namespace {

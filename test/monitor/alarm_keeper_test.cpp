@@ -6,7 +6,7 @@
 #include <string>
 
 #include "../in_folder.h"
-#include "ros/verdict/standing_alarm.h"
+#include "ros/verdict/kept_files.h"
 
 namespace self_awareness {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "../in_folder.h"
 #include "../times.h"
-#include "ros/verdict/incidents_file.h"
+#include "ros/verdict/kept_files.h"
 #include "self_awareness/SelfAwareness.h"
 
 namespace self_awareness {

@@ -13,7 +13,6 @@
 namespace self_awareness {
 namespace {
 
-using Cause = RecorderFolder::Cause;
 using Names = std::set<std::string>;
 
 constexpr std::int64_t kWallTime = 1795324233123456789;  // 2026-11-22 05:10:33.123456789 UTC [ns]
@@ -37,23 +36,23 @@ class RecorderFolderTest : public InFolder {
 };
 
 TEST_F(RecorderFolderTest, NamesTellCauseAndTimeAndKnowTheFoldersOfRosAndOfTheMonitor) {
-  const auto fileIn = [](const std::string& folder, Cause cause, const std::string& name) {
+  const auto fileIn = [](const std::string& folder, const std::string& cause,
+                         const std::string& name) {
     return RecorderFolder(folder, name, 1, 1).pathOf(cause, kWallTime);
   };
   const std::string time = "_2026-11-22-05-10-33.123.bag";
-  EXPECT_EQ(fileIn("/data", Cause::kAlarm, "/watch"), "/data/alarm" + time);
-  EXPECT_EQ(fileIn("/data", Cause::kShutdown, "/watch"), "/data/shutdown" + time);
+  EXPECT_EQ(fileIn("/data", "alarm", "/watch"), "/data/alarm" + time);
+  EXPECT_EQ(fileIn("/data", "shutdown", "/watch"), "/data/shutdown" + time);
   const std::string home = std::getenv("HOME");
-  EXPECT_EQ(fileIn("~/logs", Cause::kAlarm, "/watch"), home + "/logs/alarm" + time);
+  EXPECT_EQ(fileIn("~/logs", "alarm", "/watch"), home + "/logs/alarm" + time);
   const std::string of_ros = "$ROS_HOME/self_awareness/$NAME";
   const char* const before = std::getenv("ROS_HOME");
   const std::string ros_home = before != nullptr ? before : "";
   setenv("ROS_HOME", "/data/ros", 1);
-  EXPECT_EQ(fileIn(of_ros, Cause::kDump, "/robot/watch"),
+  EXPECT_EQ(fileIn(of_ros, "dump", "/robot/watch"),
             "/data/ros/self_awareness/robot_watch/dump" + time);
   unsetenv("ROS_HOME");
-  EXPECT_EQ(fileIn(of_ros, Cause::kDump, "/watch"),
-            home + "/.ros/self_awareness/watch/dump" + time);
+  EXPECT_EQ(fileIn(of_ros, "dump", "/watch"), home + "/.ros/self_awareness/watch/dump" + time);
   if (before != nullptr) {
     setenv("ROS_HOME", ros_home.c_str(), 1);
   }
@@ -63,7 +62,7 @@ TEST_F(RecorderFolderTest, ANameIsGivenOnceInAFolderThatIsCreated) {
   folder().create();
   folder().create();
   write({"alarm_2026-11-22-05-10-33.123.bag"});
-  EXPECT_EQ(folder().pathOf(Cause::kAlarm, kWallTime),
+  EXPECT_EQ(folder().pathOf("alarm", kWallTime),
             path("far/recorder/alarm_2026-11-22-05-10-33.124.bag"));
   boost::filesystem::remove_all(path("far/recorder"));
   writeFile(path("far/recorder"), "a file in its place");
@@ -75,7 +74,7 @@ TEST_F(RecorderFolderTest, TheOldestAreRemovedWhateverTheirCause) {
   folder().create();
   write({bag("dump", 1), bag("alarm", 2), bag("shutdown", 3), bag("alarm", 4), bag("dump", 5),
          "robot.model", "alarm_precious.bag"});
-  folder(3).removeOldest("");
+  folder(3).makeRoom("");
   EXPECT_EQ(files(), (Names{bag("shutdown", 3), bag("alarm", 4), bag("dump", 5), "robot.model",
                             "alarm_precious.bag"}));
 }
@@ -83,7 +82,7 @@ TEST_F(RecorderFolderTest, TheOldestAreRemovedWhateverTheirCause) {
 TEST_F(RecorderFolderTest, TheFileOfAnAlarmThatStandsStays) {
   folder().create();
   write({bag("alarm", 1), bag("dump", 2), bag("dump", 3), bag("dump", 4)});
-  folder(2).removeOldest(path("far/recorder/" + bag("alarm", 1)));
+  folder(2).makeRoom(path("far/recorder/" + bag("alarm", 1)));
   EXPECT_EQ(files(), (Names{bag("alarm", 1), bag("dump", 4)}));
 }
 
@@ -91,13 +90,13 @@ TEST_F(RecorderFolderTest, TheirSizeIsBoundedButTheNewestStays) {
   const RecorderFolder bounded = folder(100, 1000);
   bounded.create();
   write({bag("alarm", 1), bag("alarm", 2)}, 400);
-  bounded.removeOldest("");
+  bounded.makeRoom("");
   EXPECT_EQ(files(), (Names{bag("alarm", 1), bag("alarm", 2)}));
   write({bag("alarm", 3)}, 400);
-  bounded.removeOldest("");
+  bounded.makeRoom("");
   EXPECT_EQ(files(), (Names{bag("alarm", 2), bag("alarm", 3)}));
   write({bag("alarm", 4)}, 5000);
-  bounded.removeOldest("");
+  bounded.makeRoom("");
   EXPECT_EQ(files(), (Names{bag("alarm", 4)}));
 }
 

@@ -1,7 +1,5 @@
 // A recording that is judged afterwards says what a monitor's session said while it was made.
 
-#include "ros/verdict/replayed_monitor.h"
-
 #include <gtest/gtest.h>
 #include <rosbag/view.h>
 
@@ -14,6 +12,7 @@
 #include "../ros/serialized.h"
 #include "../times.h"
 #include "monitor/session.h"
+#include "ros/verdict/result_bag.h"
 #include "self_awareness/core/paper/judge.h"
 
 namespace self_awareness {
@@ -69,16 +68,15 @@ class ReplayedMonitorTest : public InFolder {
 
   /// What the monitor publishes of the events while they happen.
   void monitor() {
-    ros1::Announcer announcer({[&](const SelfAwareness& status) { statuses_.push_back(status); },
-                               [&](const SelfAwareness& alarm) { alarms_.push_back(alarm); },
-                               [] {}});
+    ros1::AlarmState alarm({[&](const SelfAwareness& status) { statuses_.push_back(status); },
+                            [&](const SelfAwareness& alarm) { alarms_.push_back(alarm); }, [] {}});
     const core::Vocabulary vocabulary(vocabulary_);
     Session session(trained(), parameters_, [&](const core::Verdict& verdict) {
-      announcer.add(verdict, vocabulary, session.window());
+      alarm.add(verdict, vocabulary, session.window());
     });
     for (const core::Event& event : events()) {
       if (!session.detector().add(event)) {
-        announcer.standDown(ros1::kClockWasSet, event.stamp);
+        alarm.standDown(ros1::kClockWasSet, event.stamp);
       }
     }
     session.detector().finish();

@@ -1,5 +1,3 @@
-#include "monitor/restarts.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "../times.h"
+#include "monitor/restart_watch.h"
 #include "self_awareness/ros/encoding.h"
 
 namespace self_awareness {

@@ -17,12 +17,11 @@
 
 #include "model/model_file_case.h"
 #include "ros/bag/bag_index.h"
+#include "ros/bag/version_of_bag.h"
 #include "self_awareness/FileVersion.h"
 #include "self_awareness/ros/bag/bag_reader.h"
-#include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
-#include "self_awareness/ros/bag/read_file_version.h"
 #include "self_awareness/ros/model/model_bytes.h"
 
 namespace self_awareness::ros1 {

@@ -1,6 +1,6 @@
 // Definitions and messages of strangers: each is read, or refused.
 
-#include "self_awareness/ros/message_field.h"
+#include "ros/message_field.h"
 
 #include <gtest/gtest.h>
 #include <rosgraph_msgs/Log.h>

@@ -19,7 +19,7 @@
 #include "../core/evidence/recordings.h"
 #include "core/evidence/channel/scorer.h"
 #include "core/evidence/lanes.h"
-#include "ros/verdict/replayed_monitor.h"
+#include "ros/verdict/result_bag.h"
 #include "ros/verdict/verdict_message.h"
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/learn.h"

@@ -14,7 +14,6 @@
 
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
-#include "self_awareness/ros/message_field.h"
 
 namespace self_awareness::ros1 {
 
@@ -130,6 +129,7 @@ Connection connectionFrom(const ros::M_string& header, const std::string& topic)
 using EventIds = std::function<core::EventId(const core::EventType&)>;
 
 class ListedField;
+class MessageField;
 class NamePatterns;
 class NameRenames;
 

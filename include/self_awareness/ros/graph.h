@@ -11,7 +11,7 @@
 
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/ros/encoding.h"
-#include "self_awareness/ros/siblings.h"
+#include "self_awareness/ros/own_output.h"
 
 namespace self_awareness::ros1 {
 

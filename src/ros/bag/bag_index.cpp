@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "../content_digest.h"
 #include "../text.h"
 #include "bag_records.h"
 #include "chunk_records.h"
@@ -255,18 +256,15 @@ class IndexReader {
     }
   }
 
-  /// Of the entries from the given one on (FNV-1a, 64 bit, by numbers instead of bytes).
+  /// Of the entries from the given one on.
   std::uint64_t hashOf(std::size_t first) const {
-    std::uint64_t hash = 0xcbf29ce484222325;
+    ContentDigest digest;
     for (std::size_t i = first; i < index_.entries.size(); ++i) {
       const BagIndexEntry& entry = index_.entries[i];
-      for (const std::uint64_t number : {static_cast<std::uint64_t>(entry.stamp),
-                                         std::uint64_t{entry.offset} << 32U | entry.connection}) {
-        hash = (hash ^ number) * 0x100000001b3;
-        hash ^= hash >> 29U;
-      }
+      digest.mix(static_cast<std::uint64_t>(entry.stamp));
+      digest.mix(std::uint64_t{entry.offset} << 32U | entry.connection);
     }
-    return hash;
+    return digest.value();
   }
 
   /// Messages of one moment may be the same in two chunks: the clock of a simulation stands still.

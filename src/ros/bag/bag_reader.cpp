@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "../message_field.h"
 #include "../text.h"
 #include "bag_messages.h"
-#include "event_log_file.h"
 #include "open_bag.h"
 #include "recording_files.h"
 #include "self_awareness/ros/attribute_reader.h"
-#include "self_awareness/ros/message_field.h"
-#include "self_awareness/ros/siblings.h"
+#include "self_awareness/ros/own_output.h"
 #include "set_back.h"
+#include "version_of_bag.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -286,14 +286,8 @@ template <typename Use>
 void BagReader::withMessages(const Use& use) const {
   try {
     use(RecordingFiles::Messages(*files_));
-  } catch (const rosbag::BagException& error) {
-    throw BagError(summary_.path + ": a message cannot be read (" + error.what() + ")" +
-                   reindexHint(summary_.path));
   } catch (const std::out_of_range& error) {
     throw BagError(summary_.path + ": " + error.what());
-  } catch (const std::bad_alloc&) {
-    throw BagError(summary_.path + ": the bag is damaged, or there is too little memory" +
-                   reindexHint(summary_.path));
   }
 }
 

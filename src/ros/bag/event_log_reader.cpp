@@ -12,7 +12,6 @@
 
 #include "../text.h"
 #include "bag_index.h"
-#include "event_log_file.h"
 #include "open_bag.h"
 #include "packed_events.h"
 #include "self_awareness/EventLog.h"
@@ -20,18 +19,15 @@
 #include "self_awareness/EventLogStart.h"
 #include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/stream/latched.h"
-#include "self_awareness/ros/bag/event_log_packer.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/encoding_message.h"
+#include "self_awareness/ros/ros_time.h"
 #include "self_awareness/ros/stable_name.h"
 #include "stored_messages.h"
 #include "version_of_bag.h"
 
 namespace self_awareness::ros1 {
 namespace {
-
-std::int64_t nanoseconds(const ros::Time& time) {
-  return static_cast<std::int64_t>(time.toNSec());
-}
 
 /// The messages of an event log.
 class LogMessages {
@@ -70,7 +66,7 @@ void sortByPosition(std::vector<BagIndexEntry>& entries) {
 
 void add(const self_awareness::EventLogGraph& message, BagSummary& summary) {
   GraphChange& change = summary.graph_changes.emplace_back();
-  change.stamp = nanoseconds(message.stamp);
+  change.stamp = fromRosTime(message.stamp);
   for (const self_awareness::TopicNodes& nodes : message.topics) {
     const std::string name = resolvedName(nodes.topic);
     Graph::Topic& topic = summary.graph.topics[name];
@@ -196,10 +192,10 @@ EventLogReader::EventLogReader(std::shared_ptr<const EventLogFile> file, std::si
       summary_.path = path;
       summary_.clock_watched = start.bag.empty();
       summary_.bag = start.bag.empty() ? printable(path.substr(path.rfind('/') + 1)) : start.bag;
-      summary_.start = nanoseconds(start.begin);
+      summary_.start = fromRosTime(start.begin);
       summary_.end = summary_.start;
       summary_.fingerprint = start.fingerprint;
-      summary_.robot_start = nanoseconds(start.robot_start);
+      summary_.robot_start = fromRosTime(start.robot_start);
       summary_.robot = printable(start.robot);
       summary_.has_sources = start.has_sources;
       summary_.one_sender_a_topic = start.one_sender_a_topic;
@@ -212,7 +208,7 @@ EventLogReader::EventLogReader(std::shared_ptr<const EventLogFile> file, std::si
   }
   if (!parts_.empty()) {
     const auto last = messages.read<self_awareness::EventLog>(*parts_.back());
-    summary_.end = std::max(summary_.start, nanoseconds(last.heard_until));
+    summary_.end = std::max(summary_.start, fromRosTime(last.heard_until));
     summary_.messages = last.events_before + last.events;
     summary_.dropped = last.dropped;
   }
@@ -297,7 +293,7 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
     if (progress) {
       progress(done, summary_.messages);
     }
-    auto part = messages.read<self_awareness::EventLog>(*parts_[number]);
+    const auto part = messages.read<self_awareness::EventLog>(*parts_[number]);
     if (part.number != number || part.events_before != done) {
       messages.fail("a part is missing after " + std::to_string(number) + " parts");
     }
@@ -305,13 +301,6 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
       types.push_back(named(type, encoder));
     }
     known.resize(types.size());
-    PackedEvents packed;
-    packed.first = nanoseconds(part.first);
-    packed.events = part.events;
-    packed.delay_bits = part.delay_bits;
-    packed.id_bits = part.id_bits;
-    packed.bytes = std::move(part.packed);
-    packed.attributes = std::move(part.attributes);
     if (part.events > EventLogPacker::kMostEvents) {
       messages.fail("a part of too many events");
     }
@@ -324,11 +313,11 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
     }
     std::vector<core::Event> events;
     try {
-      events = packed.unpack();
+      events = unpack(part);
     } catch (const std::invalid_argument& error) {
       messages.fail(error.what());
     }
-    if (!events.empty() && events.back().stamp > nanoseconds(part.heard_until)) {
+    if (!events.empty() && events.back().stamp > fromRosTime(part.heard_until)) {
       messages.fail("an event after the end of its part");
     }
     for (const core::Event& event : events) {

@@ -1,12 +1,16 @@
 #include "self_awareness/ros/bag/event_log_writer.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <random>
 #include <utility>
 
+#include "packed_events.h"
 #include "self_awareness/EventLogGraph.h"
+#include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/encoding_message.h"
 #include "self_awareness/ros/file_version.h"
+#include "self_awareness/ros/output_file.h"
 #include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
@@ -25,7 +29,58 @@ self_awareness::TopicNodes nodesOf(const std::string& name, const Graph::Topic& 
   return message;
 }
 
+std::size_t bytesOf(const self_awareness::EventType& type) {
+  return sizeof type + type.source.capacity() + type.scope.capacity() + type.type.capacity();
+}
+
 }  // namespace
+
+void EventLogPacker::add(const core::Event& event, const core::Vocabulary& vocabulary) {
+  // Events that roscpp's threads heard at once may be out of order by microseconds.
+  if (events_.size() == kMostEvents || (!events_.empty() && event.stamp < events_.back().stamp)) {
+    flush(events_.back().stamp);
+  }
+  advance(event.stamp);
+  if (event.id >= ids_.size()) {
+    ids_.resize(event.id + 1);
+  }
+  std::optional<core::EventId>& id = ids_[event.id];
+  if (!id) {
+    id = known_++;
+    const core::EventType& type = vocabulary.at(event.id);
+    self_awareness::EventType message;
+    message.source = type.source;
+    message.scope = type.scope;
+    message.type = type.type;
+    new_types_.push_back(message);
+  }
+  events_.push_back({event.stamp, *id, event.attributes});
+}
+
+void EventLogPacker::advance(std::int64_t now) {
+  if (!begin_) {
+    begin_ = now;
+  } else if (now - *begin_ >= kLongestPart) {
+    flush(now);
+  }
+}
+
+void EventLogPacker::flush(std::int64_t now) {
+  self_awareness::EventLog part;
+  pack(events_, part);
+  part.new_types = std::exchange(new_types_, {});
+  part.heard_until = toRosTime(std::max(now, events_.empty() ? now : events_.back().stamp));
+  part.dropped = dropped_;
+  for (const core::Waiting& waiting : waiting_) {
+    part.waiting_from.push_back(waiting.from);
+    part.waiting_to.push_back(waiting.to);
+    part.waited.push_back(waiting.waited);
+  }
+  waiting_.clear();
+  events_.clear();
+  begin_ = now;
+  handler_(std::move(part));
+}
 
 self_awareness::EventLogStart startOfRecording(const EncodingRules& encoding, std::int64_t begin,
                                                std::int64_t robot_start,
@@ -86,6 +141,63 @@ void EventLogWriter::writeGraph(const Graph& whole, std::int64_t stamp) {
     bag_.write({kEventLogGraphTopic}, inBag(message.stamp), message);
     graph_ = graph;
   }
+}
+
+std::size_t bytesOf(const self_awareness::EventLog& part) {
+  std::size_t bytes =
+      sizeof part + part.packed.capacity() + 3 * sizeof(std::int64_t) * part.waited.capacity();
+  for (const self_awareness::EventType& type : part.new_types) {
+    bytes += bytesOf(type);
+  }
+  return bytes;
+}
+
+void writeLog(const RecordedLog& recording, const std::string& path) {
+  OutputFile file(path);
+  EventLogWriter log(file.temporary(), path);
+  log.start(recording.start);
+  if (recording.graph) {
+    log.writeGraph(*recording.graph, static_cast<std::int64_t>(recording.start.begin.toNSec()));
+  }
+  for (const auto& part : recording.parts) {
+    self_awareness::EventLog written = *part;
+    if (part == recording.parts.front()) {
+      written.new_types.insert(written.new_types.begin(), recording.types_before.begin(),
+                               recording.types_before.end());
+    }
+    log.write(std::move(written));
+  }
+  log.close();
+  file.complete();
+}
+
+void addToEventLog(const BagReader& bag, const EncodingRules& rules, const Graph& graph,
+                   EventLogWriter& log, const BagReader::Progress& progress) {
+  const BagSummary& summary = bag.summary();
+  self_awareness::EventLogStart start;
+  start.encoding = toMessage(rules);
+  start.begin = toRosTime(summary.start);
+  start.bag = summary.bag;
+  start.fingerprint = summary.fingerprint;
+  start.has_sources = summary.has_sources;
+  start.one_sender_a_topic = summary.one_sender_a_topic;
+  start.copied = summary.copied;
+  log.start(start);
+  log.writeGraph(graph, summary.start);
+
+  core::Vocabulary vocabulary;
+  const Encoder encoder(rules, [&](const core::EventType& type) {
+    const std::size_t before = vocabulary.size();
+    const core::EventId id = vocabulary.intern(type);
+    if (vocabulary.size() > before) {
+      checkEventTypes(rules, vocabulary);
+    }
+    return id;
+  });
+  EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
+  bag.read(
+      encoder, {}, [&](const core::Event& event) { packer.add(event, vocabulary); }, progress);
+  packer.flush(summary.end);
 }
 
 }  // namespace self_awareness::ros1

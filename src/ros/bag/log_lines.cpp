@@ -1,20 +1,19 @@
 #include "log_lines.h"
 
-#include <rosbag/exceptions.h>
-
 #include <algorithm>
 #include <iterator>
-#include <memory>
-#include <new>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "../log_line.h"
-#include "bag_messages.h"
-#include "open_bag.h"
-#include "self_awareness/ros/bag/bag_reader.h"
+#include "../message_cursor.h"
+#include "../text.h"
+#include "recording_files.h"
+#include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/stable_name.h"
+#include "set_back.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -36,7 +35,8 @@ std::vector<BagIndexEntry> linesIn(const BagIndex& index) {
 }
 
 std::vector<LogLine> lastLines(const LogQuery& query, const std::vector<BagIndexEntry>& places,
-                               const Encoder& encoder, BagMessages& messages, std::size_t most) {
+                               const RecordingFiles& files, const Encoder& encoder,
+                               RecordingFiles::Messages& messages, std::size_t most) {
   const auto after = std::upper_bound(
       places.begin(), places.end(), query.until,
       [](std::int64_t until, const BagIndexEntry& entry) { return until < entry.stamp; });
@@ -46,7 +46,7 @@ std::vector<LogLine> lastLines(const LogQuery& query, const std::vector<BagIndex
   for (auto place = after; place != places.begin() && lines.size() < most && read < kMostLinesRead;
        ++read) {
     --place;
-    messages.read(*place, content);
+    messages.read(asStored(*place, files.setBack()), content);
     std::optional<SaidLine> said = readLogLine(content.data(), content.size());
     if (said && encoder.sourceOf(said->node) == query.node) {
       lines.push_back({place->stamp, said->level, std::move(said->text)});
@@ -56,40 +56,37 @@ std::vector<LogLine> lastLines(const LogQuery& query, const std::vector<BagIndex
   return lines;
 }
 
-std::vector<std::vector<LogLine>> lastLinesOfFile(const std::string& path, const Encoder& encoder,
-                                                  const std::vector<LogQuery>& queries,
-                                                  std::size_t most) {
-  const BagIndex index = openBag(path);
-  const std::vector<BagIndexEntry> places = linesIn(index);
-  std::vector<std::vector<LogLine>> found;
-  try {
-    BagMessages messages(path, index.numbers);
-    for (const LogQuery& query : queries) {
-      found.push_back(lastLines(query, places, encoder, messages, most));
-    }
-  } catch (const rosbag::BagException& error) {
-    throw BagError(path + ": a message cannot be read (" + error.what() + ")" + reindexHint(path));
-  } catch (const std::bad_alloc&) {
-    throw BagError(path + ": the bag is damaged, or there is too little memory" +
-                   reindexHint(path));
-  }
-  return found;
-}
-
 }  // namespace
+
+std::optional<SaidLine> readLogLine(const std::uint8_t* data, std::size_t size) {
+  try {
+    MessageCursor cursor(data, size);
+    for (int i = 0; i < 3; ++i) {
+      cursor.number<std::uint32_t>();  // sequence number and stamp of the header
+    }
+    cursor.string();  // frame
+    SaidLine line;
+    line.level = cursor.number<std::uint8_t>();
+    line.node = stableName(std::string(cursor.string().substr(0, kLongestName)));
+    std::string text(cursor.string().substr(0, kLongestLine));
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    line.text = printable(text);
+    return line;
+  } catch (const std::out_of_range&) {
+    return std::nullopt;
+  }
+}
 
 std::vector<std::vector<LogLine>> lastLogLines(const std::vector<std::string>& paths,
                                                const Encoder& encoder,
                                                const std::vector<LogQuery>& queries,
                                                std::size_t most) {
-  std::vector<std::vector<LogLine>> found(queries.size());
-  for (const std::string& path : paths) {
-    std::vector<std::vector<LogLine>> of_file = lastLinesOfFile(path, encoder, queries, most);
-    for (std::size_t k = 0; k < queries.size(); ++k) {
-      std::move(of_file[k].begin(), of_file[k].end(), std::back_inserter(found[k]));
-      const std::size_t excess = found[k].size() - std::min(found[k].size(), most);
-      found[k].erase(found[k].begin(), found[k].begin() + static_cast<std::ptrdiff_t>(excess));
-    }
+  const RecordingFiles files(paths);
+  const std::vector<BagIndexEntry> places = linesIn(files.index());
+  RecordingFiles::Messages messages(files);
+  std::vector<std::vector<LogLine>> found;
+  for (const LogQuery& query : queries) {
+    found.push_back(lastLines(query, places, files, encoder, messages, most));
   }
   return found;
 }

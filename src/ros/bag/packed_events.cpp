@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "self_awareness/ros/ros_time.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
@@ -145,18 +147,17 @@ int shortestDelayBits(const std::vector<std::uint64_t>& delays) {
 
 }  // namespace
 
-PackedEvents PackedEvents::pack(const std::vector<core::Event>& events) {
+void pack(const std::vector<core::Event>& events, self_awareness::EventLog& part) {
   if (events.size() > std::numeric_limits<std::uint32_t>::max()) {
     throw std::invalid_argument("too many events to pack together");
   }
-  PackedEvents packed;
-  packed.events = static_cast<std::uint32_t>(events.size());
+  part.events = static_cast<std::uint32_t>(events.size());
   if (events.empty()) {
-    return packed;
+    return;
   }
-  packed.first = events.front().stamp;
+  part.first = toRosTime(events.front().stamp);
   std::vector<std::uint64_t> delays;
-  std::int64_t last = packed.first;
+  std::int64_t last = events.front().stamp;
   std::uint64_t largest_id = 0;
   for (const core::Event& event : events) {
     if (event.stamp < last) {
@@ -171,9 +172,9 @@ PackedEvents PackedEvents::pack(const std::vector<core::Event>& events) {
   while (largest_id >> id_bits > 0) {
     ++id_bits;
   }
-  packed.delay_bits = static_cast<std::uint8_t>(delay_bits);
-  packed.id_bits = static_cast<std::uint8_t>(id_bits);
-  BitWriter writer(packed.bytes);
+  part.delay_bits = static_cast<std::uint8_t>(delay_bits);
+  part.id_bits = static_cast<std::uint8_t>(id_bits);
+  BitWriter writer(part.packed);
   for (std::size_t k = 0; k < events.size(); ++k) {
     const std::uint64_t ones = delays[k] >> delay_bits;
     if (ones < kMostOnes) {
@@ -185,20 +186,20 @@ PackedEvents PackedEvents::pack(const std::vector<core::Event>& events) {
     }
     writer.write(events[k].id, id_bits);
   }
-  packed.attributes = packAttributes(events);
-  return packed;
+  part.attributes = packAttributes(events);
 }
 
-std::vector<core::Event> PackedEvents::unpack() const {
-  if (delay_bits > kMostDelayBits || id_bits > kMostIdBits) {
+std::vector<core::Event> unpack(const self_awareness::EventLog& part) {
+  const std::uint8_t delay_bits = part.delay_bits;
+  if (delay_bits > kMostDelayBits || part.id_bits > kMostIdBits) {
     throw std::invalid_argument("packed events have a wrong number of bits");
   }
   std::vector<core::Event> unpacked;
   // Each has one bit at least: damaged numbers do not ask for much memory.
-  unpacked.reserve(std::min<std::size_t>(events, 8 * bytes.size()));
-  BitReader reader(bytes);
-  std::int64_t stamp = first;
-  for (std::uint32_t k = 0; k < events; ++k) {
+  unpacked.reserve(std::min<std::size_t>(part.events, 8 * part.packed.size()));
+  BitReader reader(part.packed);
+  std::int64_t stamp = fromRosTime(part.first);
+  for (std::uint32_t k = 0; k < part.events; ++k) {
     std::uint64_t ones = 0;
     while (ones < kMostOnes && reader.read(1) == 1) {
       ++ones;
@@ -206,16 +207,16 @@ std::vector<core::Event> PackedEvents::unpack() const {
     const bool runs_over = ones < kMostOnes && ones > kMostDelay >> delay_bits;
     const std::uint64_t delay =
         ones < kMostOnes ? ones << delay_bits | reader.read(delay_bits) : reader.read(kWholeBits);
-    if (runs_over || stamp < 0 || delay > kMostDelay - static_cast<std::uint64_t>(stamp)) {
+    if (runs_over || delay > kMostDelay - static_cast<std::uint64_t>(stamp)) {
       throw std::invalid_argument("the time of packed events runs over");
     }
     stamp += static_cast<std::int64_t>(delay);
-    unpacked.push_back({stamp, static_cast<core::EventId>(reader.read(id_bits))});
+    unpacked.push_back({stamp, static_cast<core::EventId>(reader.read(part.id_bits))});
   }
-  if (reader.bytes() != bytes.size()) {
+  if (reader.bytes() != part.packed.size()) {
     throw std::invalid_argument("packed events are followed by other bytes");
   }
-  unpackAttributes(attributes, unpacked);
+  unpackAttributes(part.attributes, unpacked);
   return unpacked;
 }
 

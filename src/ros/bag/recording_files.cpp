@@ -191,6 +191,9 @@ void RecordingFiles::Messages::inItsFile(const BagIndexEntry& entry, const Use& 
   } catch (const rosbag::BagException& error) {
     throw BagError(file->path + ": a message cannot be read (" + error.what() + ")" +
                    reindexHint(file->path));
+  } catch (const std::bad_alloc&) {
+    throw BagError(file->path + ": the bag is damaged, or there is too little memory" +
+                   reindexHint(file->path));
   }
 }
 

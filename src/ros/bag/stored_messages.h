@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "../check.h"
 #include "../content_digest.h"
-#include "../message_check.h"
 #include "../message_upgrade.h"
 #include "bag_index.h"
 #include "bag_messages.h"
@@ -50,7 +50,16 @@ class StoredMessages {
 
  private:
   /// Lays the message out as this program's definition says.
-  void upgrade(std::uint32_t connection, const std::string& definition);
+  void upgrade(std::uint32_t connection, const std::string& definition) {
+    auto found = upgrades_.find(connection);
+    if (found == upgrades_.end()) {
+      const Connection& stored = index_->connections[connection];
+      const MessageDefinition from(stored.definition, stored.datatype);
+      found =
+          upgrades_.emplace(connection, MessageUpgrade(from, {definition, stored.datatype})).first;
+    }
+    content_ = found->second.apply(content_.data(), content_.size());
+  }
 
   const BagIndex* index_;
   BagMessages messages_;

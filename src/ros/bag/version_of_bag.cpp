@@ -3,12 +3,15 @@
 #include <rosbag/exceptions.h>
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 
 #include "../text.h"
 #include "open_bag.h"
+#include "self_awareness/EventLog.h"
+#include "self_awareness/EventLogGraph.h"
+#include "self_awareness/EventLogStart.h"
 #include "self_awareness/ros/bag/bag_reader.h"
-#include "self_awareness/ros/bag/read_file_version.h"
 #include "stored_messages.h"
 
 namespace self_awareness::ros1 {
@@ -29,6 +32,13 @@ self_awareness::FileVersion versionOfKind(const std::string& path, const BagInde
                    "; the file says that it is: " + printable(version->kind, kLongestKind));
   }
   return version.value_or(firstVersionOf(kind));
+}
+
+bool holdNothingElse(const std::vector<Connection>& connections) {
+  return !connections.empty() &&
+         std::all_of(connections.begin(), connections.end(), [](const Connection& connection) {
+           return isOfEventLog(connection) || holds<self_awareness::FileVersion>(connection);
+         });
 }
 
 }  // namespace
@@ -72,6 +82,27 @@ self_awareness::FileVersion checkedVersion(const std::string& path, const BagInd
 
 self_awareness::FileVersion readFileVersion(const std::string& path, const FileKind& kind) {
   return versionOfKind(path, openBag(path), kind);
+}
+
+bool isOfEventLog(const Connection& connection) {
+  return holds<self_awareness::EventLogStart>(connection) ||
+         holds<self_awareness::EventLog>(connection) ||
+         holds<self_awareness::EventLogGraph>(connection);
+}
+
+bool mayBeEventLog(const std::vector<Connection>& connections) {
+  return tellVersion(connections) || holdNothingElse(connections);
+}
+
+bool isEventLog(const std::string& path, const BagIndex& index) {
+  if (!mayBeEventLog(index.connections)) {
+    return false;
+  }
+  const std::optional<self_awareness::FileVersion> version = versionOfBag(path, index);
+  return version
+             ? version->kind == kEventLogFile.name &&
+                   (version->format > kEventLogFile.format || holdNothingElse(index.connections))
+             : holdNothingElse(index.connections);
 }
 
 }  // namespace self_awareness::ros1

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "../now.h"
 #include "../text.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
 

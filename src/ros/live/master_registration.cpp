@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "../master_calls.h"
-#include "own_node.h"
+#include "slave_api.h"
 
 namespace self_awareness::ros1 {
 namespace {

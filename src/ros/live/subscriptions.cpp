@@ -10,12 +10,11 @@
 #include <iterator>
 #include <utility>
 
-#include "../now.h"
 #include "../text.h"
-#include "own_node.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/ros_time.h"
+#include "slave_api.h"
 
 namespace self_awareness::ros1 {
 namespace {

@@ -1,6 +1,6 @@
 #include "bytes.h"
 
-#include "../message_check.h"
+#include "../check.h"
 #include "../text.h"
 
 namespace self_awareness::ros1 {

@@ -32,6 +32,17 @@ std::string inWords(const core::Verdict& verdict, const std::string& load) {
 
 void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
                      std::int64_t window, const Circumstances& circumstances) {
+  const auto before = std::pair(message_.kind, message_.component);
+  take(verdict, vocabulary, window, circumstances);
+  handlers_.on_status(message_);
+  if (verdict.changed || (stands() && std::pair(message_.kind, message_.component) != before)) {
+    handlers_.on_alarm(message_);
+    handlers_.on_diagnostics();
+  }
+}
+
+void AlarmState::take(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
+                      std::int64_t window, const Circumstances& circumstances) {
   const std::int64_t end = verdict.window->start + window;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   ended_ = alarms_.add(verdict, window, vocabulary);
@@ -90,9 +101,10 @@ void AlarmState::resume(const self_awareness::StandingAlarm& before,
   alarms_.resume(std::move(standing));
   message_ = alarm;
   recording_ = before.recording;
+  handlers_.on_alarm(message_);
 }
 
-bool AlarmState::standDown(const std::string& message, std::int64_t now) {
+void AlarmState::standDown(const std::string& message, std::int64_t now) {
   const bool stood = stands();
   ended_ = alarms_.end(now);
   tell(ended_);
@@ -103,7 +115,10 @@ bool AlarmState::standDown(const std::string& message, std::int64_t now) {
   message_.evidence.clear();
   shared_.clear();
   message_.header.stamp = toRosTime(now);
-  return stood;
+  if (stood) {
+    handlers_.on_alarm(message_);
+  }
+  handlers_.on_diagnostics();
 }
 
 void AlarmState::tell(const std::optional<core::Alarm>& alarm) {

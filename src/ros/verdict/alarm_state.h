@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "self_awareness/SelfAwareness.h"
@@ -19,13 +21,31 @@ struct Circumstances {
   std::string recording;  ///< path of the file that holds the events of the alarm
 };
 
-/// What the monitor says now: the verdict on the last window, and the alarm or suspicion that
-/// stands, with its suspects, its evidence, and since when.
+/// What AlarmState::standDown() says where ROS time was set.
+constexpr char kClockWasSet[] = "settling: ROS time was set";
+
+/// To whom AlarmState says what it does.
+struct AlarmHandlers {
+  using Handler = std::function<void(const self_awareness::SelfAwareness&)>;
+  /// Called with every window: ~status.
+  Handler on_status = [](const auto& /*status*/) {};
+  /// Called with each change of the level, and when an alarm names further components, or
+  /// another one is to blame: ~alarm.
+  Handler on_alarm = [](const auto& /*alarm*/) {};
+  /// Called after each change: /diagnostics cannot wait for the next heartbeat.
+  std::function<void()> on_diagnostics = [] {};
+};
+
+/// What the monitor says now, and when it says so; live and of a recording alike: the verdict on
+/// the last window, and the alarm or suspicion that stands, with its suspects, its evidence, and
+/// since when.
 ///
 /// This is the one place where the level is kept. The detector decides with which window it
 /// changes; what was said stands until then, or until standDown() takes it back.
 class AlarmState {
  public:
+  explicit AlarmState(AlarmHandlers handlers = {}) : handlers_(std::move(handlers)) {}
+
   /// Takes in the verdict on the next window. An alarm keeps the suspects and the evidence of the
   /// last window that had any.
   /// @param vocabulary that the suspects' ids are of
@@ -39,8 +59,7 @@ class AlarmState {
   /// Takes back what stands, for another reason than a window: there is nothing abnormal any more.
   /// @param message the reason
   /// @param now ROS time [ns]
-  /// @return whether an alarm or a suspicion stood
-  bool standDown(const std::string& message, std::int64_t now);
+  void standDown(const std::string& message, std::int64_t now);
   /// Forgets what was said of the last window, since another model judges from now on; an alarm
   /// stands until standDown().
   void forgetWindow();
@@ -67,9 +86,13 @@ class AlarmState {
   const self_awareness::SelfAwareness& message() const { return message_; }
 
  private:
+  /// Takes over what the verdict says.
+  void take(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window,
+            const Circumstances& circumstances);
   /// Says which alarm the message is about.
   void tell(const std::optional<core::Alarm>& alarm);
 
+  const AlarmHandlers handlers_;
   core::Alarms alarms_;
   std::optional<core::Alarm> ended_;
   self_awareness::SelfAwareness message_;

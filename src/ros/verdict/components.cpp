@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "self_awareness/ros/siblings.h"
+#include "self_awareness/ros/own_output.h"
 
 namespace self_awareness::ros1 {
 namespace {

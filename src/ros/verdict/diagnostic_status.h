@@ -14,7 +14,6 @@
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/evidence/limits/coverage.h"
 #include "self_awareness/core/verdict/source_graph.h"
-#include "status_lists.h"
 #include "status_round.h"
 
 namespace self_awareness::ros1 {

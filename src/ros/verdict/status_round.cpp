@@ -3,12 +3,38 @@
 #include <ros/serialization.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <set>
+#include <utility>
 
-#include "status_lists.h"
+#include "../text.h"
 
 namespace self_awareness::ros1 {
 namespace {
+
+constexpr std::size_t kMostListed = 20;
+constexpr std::size_t kMostBytes = 300;
+constexpr std::size_t kFewBytes = 100;
+constexpr double kEvery = 20;  // [s]
+
+// How many items from the first on a number of bytes holds; one at least.
+std::size_t fitting(const std::vector<std::string>& list, std::size_t most) {
+  std::size_t bytes = 0;
+  std::size_t items = 0;
+  while (items < list.size() && items < kMostListed) {
+    bytes += list[items].size() + 2;
+    if (items > 0 && bytes > most) {
+      break;
+    }
+    ++items;
+  }
+  return items;
+}
+
+// An item may be as long as a stranger's name.
+std::string cut(const std::string& item) {
+  return shortened(item, kMostBytes);
+}
 
 using diagnostic_msgs::DiagnosticStatus;
 
@@ -22,6 +48,63 @@ constexpr std::size_t kUrgent = 2;
 constexpr double kRound = 50;
 
 }  // namespace
+
+std::string listed(const std::vector<std::string>& list) {
+  const std::size_t told = fitting(list, kMostBytes);
+  std::string text;
+  for (std::size_t i = 0; i < told; ++i) {
+    text += (i > 0 ? ", " : "") + cut(list[i]);
+  }
+  return told < list.size() ? text + " and " + std::to_string(list.size() - told) + " more" : text;
+}
+
+void tellList(const std::string& key, const std::vector<std::string>& list, ListsAre lists,
+              diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::string text = listed(list);
+  if (lists == ListsAre::kCounted && list.size() > 1 && text.size() > kFewBytes) {
+    status.add(key, std::to_string(list.size()) + ", listed every 20 s");
+  } else if (!list.empty()) {
+    status.add(key, text);
+  }
+}
+
+void tellNumbered(const std::string& key, const std::vector<std::string>& list, ListsAre lists,
+                  diagnostic_updater::DiagnosticStatusWrapper& status) {
+  const std::size_t told = fitting(list, lists == ListsAre::kTold ? kMostBytes : kFewBytes);
+  for (std::size_t i = 0; i < told; ++i) {
+    status.add(key + " " + std::to_string(i + 1), cut(list[i]));
+  }
+  if (told < list.size()) {
+    status.add("further " + key, list.size() - told);
+  }
+}
+
+ListsAre ListRound::next(const std::string& lists, double elapsed) {
+  since_ += elapsed;
+  std::string now = withoutNumbers(lists);
+  if (now == told_ && since_ < kEvery) {
+    return ListsAre::kCounted;
+  }
+  told_ = std::move(now);
+  since_ = 0;
+  return ListsAre::kTold;
+}
+
+std::string withoutNumbers(const std::string& text) {
+  std::string words;
+  bool in_number = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto isDigit = [&](std::size_t at) {
+      return at < text.size() && text[at] >= '0' && text[at] <= '9';
+    };
+    const bool in_it = isDigit(i) || (in_number && text[i] == '.' && isDigit(i + 1));
+    if (!in_it || !in_number) {
+      words += in_it ? '0' : text[i];
+    }
+    in_number = in_it;
+  }
+  return words;
+}
 
 std::size_t bytesOf(const DiagnosticStatus& status) {
   return ros::serialization::serializationLength(status);

@@ -12,8 +12,8 @@
 #include "bag_bytes.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/bag_reader.h"
-#include "self_awareness/ros/bag/bag_to_event_log.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
 
 namespace self_awareness::ros1 {
 

@@ -15,7 +15,6 @@
 #include "../../problem.h"
 #include "../../times.h"
 #include "self_awareness/core/stream/vocabulary.h"
-#include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 

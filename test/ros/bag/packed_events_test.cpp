@@ -17,6 +17,13 @@ namespace self_awareness::ros1 {
 namespace {
 
 using core::Event;
+using self_awareness::EventLog;
+
+EventLog packed(const std::vector<Event>& events) {
+  EventLog part;
+  pack(events, part);
+  return part;
+}
 
 bool same(const std::vector<Event>& a, const std::vector<Event>& b) {
   return a.size() == b.size() &&
@@ -34,9 +41,9 @@ TEST(PackedEvents, ComeOutAsTheyWentIn) {
       {{0, 1}, {std::numeric_limits<std::int64_t>::max(), 2}},
       {{kNow, 0}, {kNow + 1, 4294967295}, {kNow + 86400 * core::kNanosecondsPerSecond, 3}}};
   for (const std::vector<Event>& events : cases) {
-    EXPECT_TRUE(same(PackedEvents::pack(events).unpack(), events)) << events.size();
+    EXPECT_TRUE(same(unpack(packed(events)), events)) << events.size();
   }
-  EXPECT_THROW(PackedEvents::pack({{2, 0}, {1, 0}}), std::invalid_argument) << "time goes back";
+  EXPECT_THROW(packed({{2, 0}, {1, 0}}), std::invalid_argument) << "time goes back";
 }
 
 TEST(PackedEvents, OfAnyRobotComeOutAsTheyWentIn) {
@@ -51,7 +58,7 @@ TEST(PackedEvents, OfAnyRobotComeOutAsTheyWentIn) {
       stamp += random() % 5 == 0 ? 0 : static_cast<std::int64_t>(delay(random));
       events.push_back({stamp, id(random)});
     }
-    ASSERT_TRUE(same(PackedEvents::pack(events).unpack(), events)) << "robot " << robot;
+    ASSERT_TRUE(same(unpack(packed(events)), events)) << "robot " << robot;
   }
 }
 
@@ -75,14 +82,14 @@ std::vector<Event> withAttributes(double scatter, double size_scatter, bool head
 }
 
 double bytesOfAttributes(const std::vector<Event>& events) {
-  return static_cast<double>(PackedEvents::pack(events).attributes.size()) /
+  return static_cast<double>(packed(events).attributes.size()) /
          static_cast<double>(events.size());
 }
 
 TEST(PackedEvents, AttributesAreKeptInTwoBytesAtMost) {
   for (const double scatter : {0.0, 0.3, 3.0}) {
     const std::vector<Event> events = withAttributes(scatter, scatter, true);
-    EXPECT_TRUE(same(PackedEvents::pack(events).unpack(), events));
+    EXPECT_TRUE(same(unpack(packed(events)), events));
   }
   EXPECT_EQ(bytesOfAttributes({{1, 0}, {2, 0}}), 0) << "nothing is known";
   EXPECT_LT(bytesOfAttributes(withAttributes(0, 0, false)), 0.3);
@@ -100,7 +107,7 @@ TEST(PackedEvents, NeedLittleMoreThanTheBitsThatFollowNoRule) {
     events.push_back({stamp, static_cast<core::EventId>(random() % 24)});
   }
   // log2(e 1 s / 163 Hz) = 23.99 bits, and 5 bits of the id.
-  const double bits = 8.0 * static_cast<double>(PackedEvents::pack(events).bytes.size());
+  const double bits = 8.0 * static_cast<double>(packed(events).packed.size());
   EXPECT_GT(bits / 20000, 28.9);
   EXPECT_LT(bits / 20000, 29.2);
 }
@@ -108,34 +115,33 @@ TEST(PackedEvents, NeedLittleMoreThanTheBitsThatFollowNoRule) {
 TEST(PackedEvents, DamageEndsInAnErrorOrInOtherEvents) {
   std::vector<Event> events{{100, 1}, {250, 3}, {700, 2}, {701, 0}};
   events[1].attributes.size = core::sizeClass(7);
-  const std::vector<std::function<void(PackedEvents&)>> changes{
-      [](PackedEvents& bad) { bad.bytes.pop_back(); },
-      [](PackedEvents& bad) { bad.bytes.push_back(0); },
-      [](PackedEvents& bad) { bad.attributes.pop_back(); },
-      [](PackedEvents& bad) { bad.attributes.push_back(0); },
-      [](PackedEvents& bad) { bad.events = 4000000000; },  // asks for much memory
-      [](PackedEvents& bad) { bad.delay_bits = 63; },
-      [](PackedEvents& bad) { bad.id_bits = 33; },
-      [](PackedEvents& bad) { bad.first = std::numeric_limits<std::int64_t>::max() - 10; }};
+  const std::vector<std::function<void(EventLog&)>> changes{
+      [](EventLog& bad) { bad.packed.pop_back(); },
+      [](EventLog& bad) { bad.packed.push_back(0); },
+      [](EventLog& bad) { bad.attributes.pop_back(); },
+      [](EventLog& bad) { bad.attributes.push_back(0); },
+      [](EventLog& bad) { bad.events = 4000000000; },  // asks for much memory
+      [](EventLog& bad) { bad.delay_bits = 63; },
+      [](EventLog& bad) { bad.id_bits = 33; }};
   for (std::size_t k = 0; k < changes.size(); ++k) {
-    PackedEvents bad = PackedEvents::pack(events);
+    EventLog bad = packed(events);
     changes[k](bad);
-    EXPECT_THROW(bad.unpack(), std::invalid_argument) << k;
+    EXPECT_THROW(unpack(bad), std::invalid_argument) << k;
   }
 
   std::mt19937_64 random(3);
   for (int k = 0; k < 20000; ++k) {  // no crash, no endless loop
-    PackedEvents any;
-    any.first = static_cast<std::int64_t>(random());
+    EventLog any;
+    any.first.sec = static_cast<std::uint32_t>(random());
     any.events = static_cast<std::uint32_t>(random() % 50);
     any.delay_bits = static_cast<std::uint8_t>(random() % 70);
     any.id_bits = static_cast<std::uint8_t>(random() % 40);
-    any.bytes.resize(random() % 40);
-    for (std::uint8_t& byte : any.bytes) {
+    any.packed.resize(random() % 40);
+    for (std::uint8_t& byte : any.packed) {
       byte = static_cast<std::uint8_t>(random() % 3 == 0 ? 255 : random());
     }
     try {
-      EXPECT_EQ(any.unpack().size(), any.events);
+      EXPECT_EQ(unpack(any).size(), any.events);
     } catch (const std::invalid_argument&) {
     }
   }

@@ -1,5 +1,3 @@
-#include "ros/live/node_call.h"
-
 #include <gtest/gtest.h>
 
 #include <boost/asio/io_context.hpp>
@@ -8,6 +6,8 @@
 #include <chrono>
 #include <string>
 #include <thread>
+
+#include "ros/live/slave_api.h"
 
 namespace self_awareness::ros1 {
 namespace {

@@ -12,7 +12,6 @@
 
 #include "../../problem.h"
 #include "ros/verdict/diagnostic_status.h"
-#include "ros/verdict/status_lists.h"
 #include "ros/verdict/verdict_message.h"
 
 namespace self_awareness::ros1 {

@@ -1,4 +1,4 @@
-#include "message_check.h"
+#include "check.h"
 
 #include "message_cursor.h"
 #include "text.h"

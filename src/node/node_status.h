@@ -4,6 +4,10 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
+
+#include "ros/verdict/status_round.h"
+#include "self_awareness/ros/live/subscriptions.h"
 
 namespace self_awareness {
 
@@ -20,5 +24,12 @@ void tellClock(std::int64_t stands_still_for, std::int64_t ros_now,
 /// Adds that several nodes publish /clock: a warning, since ROS time jumps between theirs.
 /// @param rivals their names; empty: there are not several
 void tellRivals(const std::string& rivals, diagnostic_updater::DiagnosticStatusWrapper& status);
+
+/// Who is not heard, where, and why, in words.
+std::vector<std::string> inWords(const std::vector<ros1::Unheard>& unheard);
+
+/// Adds to the status of a node who it does not hear, though the master names them: a warning.
+void tellUnheard(const std::vector<ros1::Unheard>& unheard, ros1::ListsAre lists,
+                 diagnostic_updater::DiagnosticStatusWrapper& status);
 
 }  // namespace self_awareness
