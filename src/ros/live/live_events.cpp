@@ -33,9 +33,7 @@ LiveEvents::LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_s
       arrivals_(queue_size,
                 [this] { node_handle_.getCallbackQueue()->addCallback(wake_, wakeId()); }),
       senders_([this](std::int64_t /*now*/, const core::Senders& senders) {
-        if (handlers_.on_senders) {
-          handlers_.on_senders(senders);
-        }
+        handlers_.on_senders(senders);
       }) {}
 
 LiveEvents::~LiveEvents() {
@@ -120,7 +118,7 @@ void LiveEvents::tellMode(LiveConnection& live, std::int64_t stamp, const Conten
 }
 
 std::int64_t LiveEvents::now() const {
-  return handlers_.time ? handlers_.time(rosNow(), steadyNow()) : rosNow();
+  return handlers_.time(rosNow(), steadyNow());
 }
 
 void LiveEvents::deliver() {
@@ -134,18 +132,12 @@ void LiveEvents::deliver() {
   for (const Arrivals::Dropped& of : dropped) {
     const auto known = connections_.find(of.header.get());
     if (known != connections_.end() && known->second.encoder) {
-      tellDropped(*of.topic, *of.header);
+      handlers_.on_dropped({connectionFrom(*of.header, *of.topic).callerid, *of.topic});
     }
   }
   release();
   senders_.advance(steadyNow());
   delivered_.clear();  // now: whether a connection is closed is seen by the users of its header
-}
-
-void LiveEvents::tellDropped(const std::string& topic, const ros::M_string& header) const {
-  if (handlers_.on_dropped) {
-    handlers_.on_dropped({connectionFrom(header, topic).callerid, topic});
-  }
 }
 
 void LiveEvents::onArrival(const Arrival& arrival) {
@@ -160,8 +152,7 @@ void LiveEvents::onArrival(const Arrival& arrival) {
   if (!encoder) {
     return;
   }
-  core::Event event{
-      handlers_.time ? handlers_.time(arrival.stamp, arrival.steady) : arrival.stamp, 0, {}};
+  core::Event event{handlers_.time(arrival.stamp, arrival.steady), 0, {}};
   if (isRead(live, arrival)) {
     read(arrival);
     live.read_at = arrival.steady;
@@ -199,11 +190,11 @@ void LiveEvents::onArrival(const Arrival& arrival) {
         return;
       }
       if (const auto id = encoder->list(content_.data(), content_.size(), event.stamp)) {
-        tellContent(*id);
+        handlers_.on_content(*id, content_);
         tell(live, {event.stamp, *id, {}}, arrival.steady);
       }
       event.id = encoder->id(content_.data(), content_.size());
-      tellContent(event.id);
+      handlers_.on_content(event.id, content_);
     } catch (const std::out_of_range& error) {
       ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->c_str(),
                          printable(error.what(), kLongestName).c_str());
@@ -211,12 +202,6 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     }
   }
   tell(live, event, arrival.steady);
-}
-
-void LiveEvents::tellContent(core::EventId id) const {
-  if (handlers_.on_content) {
-    handlers_.on_content(id, content_);
-  }
 }
 
 bool LiveEvents::isRead(const LiveConnection& live, const Arrival& arrival) {

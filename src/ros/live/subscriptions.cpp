@@ -101,7 +101,7 @@ void Subscriptions::listen(const Listening& listening) {
   compare(listening, now);
   tellAgain(listening, now);
   std::vector<Unheard> unheard = missingFor3s(listening.first, now);
-  shared_.lock()->unheard.swap(unheard);
+  unheard_.lock()->swap(unheard);
 }
 
 void Subscriptions::subscribe(const std::string& topic) {

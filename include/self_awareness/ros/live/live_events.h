@@ -46,19 +46,21 @@ class LiveEvents {
 
   struct Handlers {
     std::function<void(const core::Event&)> on_event;
-    /// The content of a message that is read for its event type, before the event. May be empty.
-    std::function<void(core::EventId, const Content&)> on_content;
+    /// The content of a message that is read for its event type, before the event.
+    std::function<void(core::EventId, const Content&)> on_content =
+        [](core::EventId /*id*/, const Content& /*content*/) {};
     /// The time that an event is stamped with, by ROS time and the steady clock when its message
-    /// came [ns]. May be empty: ROS time.
-    std::function<std::int64_t(std::int64_t, std::int64_t)> time;
+    /// came [ns].
+    std::function<std::int64_t(std::int64_t, std::int64_t)> time =
+        [](std::int64_t ros_time, std::int64_t /*steady_time*/) { return ros_time; };
     /// Called by the callback queue when deliver() should not wait any longer: by the first
     /// message after the end of a window, or where a topic's queue fills.
     std::function<void()> on_arrivals;
     /// Messages of this publisher were dropped since the last deliver(), unless the rules leave it
-    /// out. May be empty.
-    std::function<void(const Publication&)> on_dropped;
-    /// Who sends now, as far as events do not say it, whenever that changes. May be empty.
-    std::function<void(const core::Senders&)> on_senders;
+    /// out.
+    std::function<void(const Publication&)> on_dropped = [](const auto& /*publication*/) {};
+    /// Who sends now, as far as events do not say it, whenever that changes.
+    std::function<void(const core::Senders&)> on_senders = [](const auto& /*senders*/) {};
   };
 
   /// @param node_handle whose callback queue is used
@@ -66,8 +68,6 @@ class LiveEvents {
   LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size, Handlers handlers);
   /// Nothing may arrive any more.
   ~LiveEvents();
-  LiveEvents(const LiveEvents&) = delete;
-  LiveEvents& operator=(const LiveEvents&) = delete;
 
   /// Where the messages must arrive.
   Arrivals& arrivals() { return arrivals_; }
@@ -119,7 +119,6 @@ class LiveEvents {
   static bool isRead(const LiveConnection& live, const Arrival& arrival);
   /// Puts the bytes of a message into content_.
   void read(const Arrival& arrival);
-  void tellContent(core::EventId id) const;
   /// To another encoder: the mode, and what is latched.
   void tellLastingAgain();
   void tellLatched(LiveConnection& live, std::int64_t stamp, std::int64_t steady_time);
@@ -134,7 +133,6 @@ class LiveEvents {
   bool hold(LiveConnection& live, const core::Event& event, std::int64_t steady_time);
   /// Hands on what was kept back for long enough.
   void release();
-  void tellDropped(const std::string& topic, const ros::M_string& header) const;
   LiveConnection& connectionOf(const Arrival& arrival);
   std::optional<ConnectionEncoder> connect(const Connection& connection);
   std::uint64_t wakeId() const { return reinterpret_cast<std::uintptr_t>(this); }

@@ -60,15 +60,16 @@ class Subscriptions {
 
   /// @param arrivals must outlive this
   explicit Subscriptions(Arrivals& arrivals);
-  Subscriptions(const Subscriptions&) = delete;
-  Subscriptions& operator=(const Subscriptions&) = delete;
   ~Subscriptions();
 
   /// Listens to these topics and to no others. To be called again and again: it also looks who is
   /// missing.
   void listen(const Listening& listening);
   /// Who has been missing for 3 s; those of the first topics before others.
-  std::vector<Unheard> unheard() const { return shared_.lock()->unheard; }
+  std::vector<Unheard> unheard() const {
+    const auto unheard = unheard_.lock();
+    return *unheard;
+  }
 
  private:
   using Publication = std::pair<std::string, Publisher>;  // topic, and who publishes it
@@ -77,9 +78,6 @@ class Subscriptions {
     std::int64_t tell_at = 0;  // when roscpp is told again [ns of steady time]
     std::int64_t pause = 0;    // after that [ns]
     std::string why = "has not answered yet";
-  };
-  struct Shared {
-    std::vector<Unheard> unheard;
   };
   class Queue;
   struct Subscribed {
@@ -100,7 +98,7 @@ class Subscriptions {
   ros::AsyncSpinner copying_{1, &large_};
   std::map<std::string, Subscribed> subscribers_;  // by topic
   std::map<Publication, Missing> missing_;
-  Guarded<Shared> shared_;
+  Guarded<std::vector<Unheard>> unheard_;
 };
 
 }  // namespace self_awareness::ros1
