@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/verdict/name_list.h"
 #include "diagnostics.h"
 #include "node/live_source.h"
 #include "parameters.h"
@@ -19,19 +20,6 @@
 #include "session.h"
 
 namespace self_awareness {
-namespace {
-
-std::string listed(const std::vector<core::Acceptance>& all) {
-  std::vector<std::string> words;
-  words.reserve(all.size());
-  for (const core::Acceptance& each : all) {
-    words.push_back(inWordsOf(each));
-  }
-  return self_awareness::listed(words);
-}
-
-}  // namespace
-
 AcceptCalls::AcceptCalls(OperatorCalls& calls, Handlers handlers)
     : calls_(calls), handlers_(std::move(handlers)) {}
 
@@ -127,16 +115,17 @@ Accept::Response AcceptCalls::serve(const Accept::Request& request, const std::s
   const std::size_t refused = wanted.refused.size();
   response.success = refused == 0 ? 1U : 0U;
   if (named - refused == 0) {
-    response.message = listed(wanted.refused);
+    response.message = core::listed(wanted.refused, kMostNamed);
     return response;
   }
   write();
   if (named > 1) {
     response.message = std::to_string(named - refused) + " of " + std::to_string(named) + ": ";
   }
-  response.message += (undo ? "judged again: " : "normal from now on: ") + listed(done) +
-                      (refused == 0 ? "" : "; refused: " + listed(wanted.refused)) + "; kept in " +
-                      path_ + (undo ? "" : unknownOf(done, acceptable->vocabulary));
+  response.message +=
+      (undo ? "judged again: " : "normal from now on: ") + inWordsOf(done) +
+      (refused == 0 ? "" : "; refused: " + core::listed(wanted.refused, kMostNamed)) +
+      "; kept in " + path_ + (undo ? "" : unknownOf(done, acceptable->vocabulary));
   ROS_INFO("%s, by %s", response.message.c_str(), caller.c_str());
   handlers_.on_change(caller);
   return response;
@@ -167,7 +156,7 @@ std::vector<core::Acceptance> AcceptCalls::takeBack(WantedAcceptances& request) 
     if (removed.empty()) {
       request.refused.push_back(
           inWordsOf(each) + " is not accepted; " +
-          (accepted_.list().empty() ? "nothing is" : "these are: " + listed(accepted_.list())));
+          (accepted_.list().empty() ? "nothing is" : "these are: " + inWordsOf(accepted_.list())));
     }
     std::move(removed.begin(), removed.end(), std::back_inserter(done));
   }
@@ -179,7 +168,7 @@ std::string AcceptCalls::unknownOf(const std::vector<core::Acceptance>& all,
   std::vector<core::Acceptance> unknown;
   std::copy_if(all.begin(), all.end(), std::back_inserter(unknown),
                [&](const core::Acceptance& each) { return !isKnown(each, vocabulary); });
-  return unknown.empty() ? "" : "; nobody of that name is known yet: " + listed(unknown);
+  return unknown.empty() ? "" : "; nobody of that name is known yet: " + inWordsOf(unknown);
 }
 
 void AcceptCalls::write() {

@@ -40,8 +40,6 @@ class AcceptCalls {
 
   /// @param calls admits them
   AcceptCalls(OperatorCalls& calls, Handlers handlers);
-  AcceptCalls(const AcceptCalls&) = delete;
-  AcceptCalls& operator=(const AcceptCalls&) = delete;
 
   /// Offers the service, for as long as the server lives. It is called in the thread that serves
   /// the node handle.

@@ -5,14 +5,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/verdict/name_list.h"
 #include "ros/text.h"
 #include "self_awareness/core/verdict/incident.h"
 #include "self_awareness/core/verdict/name_pattern.h"
 
 namespace self_awareness {
 namespace {
-
-constexpr std::size_t kMostNamed = 20;  // in an answer
 
 /// Names by which somebody may be called.
 struct Names {
@@ -290,11 +289,9 @@ std::string offerOf(const Accept::Request& request, const Acceptable& acceptable
                     const core::Acceptances& accepted) {
   std::vector<std::string> offers;
   if (request.undo != 0U) {
-    for (const core::Acceptance& each : accepted.list()) {
-      offers.push_back(inWordsOf(each));
-    }
-    return offers.empty() ? "nothing is accepted"
-                          : "name what is to be judged again: " + listed(offers);
+    return accepted.list().empty()
+               ? "nothing is accepted"
+               : "name what is to be judged again: " + inWordsOf(accepted.list());
   }
   if (acceptable.alarm) {
     const std::string id = std::to_string(acceptable.alarm->id);
@@ -315,7 +312,8 @@ std::string offerOf(const Accept::Request& request, const Acceptable& acceptable
   offers.insert(offers.end(), of_incidents.begin(), of_incidents.end());
   offers.erase(std::remove(offers.begin(), offers.end(), ""), offers.end());
   return offers.empty() ? "nothing stands, and nobody is new; name a component or a topic"
-                        : "nothing is accepted, as nothing is named. Give " + listed(offers);
+                        : "nothing is accepted, as nothing is named. Give " +
+                              core::listed(offers, kMostNamed);
 }
 
 WantedAcceptances requestOf(const Accept::Request& request, const Acceptable& acceptable,
@@ -347,21 +345,11 @@ std::string inWordsOf(const core::Acceptance& acceptance) {
 }
 
 std::string inWordsOf(const std::vector<core::Acceptance>& all) {
-  std::string words;
+  std::vector<std::string> words;
   for (const core::Acceptance& each : all) {
-    words += (words.empty() ? "" : ", ") + inWordsOf(each);
+    words.push_back(inWordsOf(each));
   }
-  return words;
-}
-
-std::string listed(const std::vector<std::string>& words) {
-  std::string list;
-  for (std::size_t i = 0; i < words.size() && i < kMostNamed; ++i) {
-    list += (i > 0 ? ", " : "") + words[i];
-  }
-  return list + (words.size() > kMostNamed
-                     ? " and " + std::to_string(words.size() - kMostNamed) + " more"
-                     : "");
+  return core::listed(words, kMostNamed);
 }
 
 bool concerns(const core::Acceptance& acceptance, const core::EventType& type) {

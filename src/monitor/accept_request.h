@@ -48,10 +48,9 @@ WantedAcceptances requestOf(const Accept::Request& request, const Acceptable& ac
 
 /// "/driver on /scan (silent)".
 std::string inWordsOf(const core::Acceptance& acceptance);
-/// The same of several.
+/// The same of several: of so many, and how many more there are.
+constexpr std::size_t kMostNamed = 20;
 std::string inWordsOf(const std::vector<core::Acceptance>& all);
-/// Some words after each other, and how many more there are.
-std::string listed(const std::vector<std::string>& words);
 /// Whether it is about an event type, or about who sends it.
 bool concerns(const core::Acceptance& acceptance, const core::EventType& type);
 /// Whether it is about somebody who was heard, or whom the model knows.

@@ -53,8 +53,6 @@ class FlightRecorder : public Part {
 
   /// @param source called when a file is asked for
   FlightRecorder(const RecorderParameters& parameters, std::function<ros1::LogSource()> source);
-  FlightRecorder(const FlightRecorder&) = delete;
-  FlightRecorder& operator=(const FlightRecorder&) = delete;
 
   /// Whether there is a recorder: not with a duration of 0.
   bool enabled() const { return duration_ > 0; }

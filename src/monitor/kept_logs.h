@@ -50,8 +50,6 @@ class KeptLogs : public Part {
   /// @param robot_start when the robot was started: wall time [ns]
   KeptLogs(const KeptLogsParameters& parameters, std::function<ros1::LogSource()> source,
            std::int64_t robot_start);
-  KeptLogs(const KeptLogs&) = delete;
-  KeptLogs& operator=(const KeptLogs&) = delete;
 
   bool enabled() const { return parameters_.on; }
   /// Another model judges from now on. Its logs are in a folder beside it.

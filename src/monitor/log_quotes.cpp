@@ -35,8 +35,7 @@ std::string nameOf(std::uint8_t level) {
 }
 
 std::string quoted(const std::string& text) {
-  return "\"" + ros1::printable(text, LogQuotes::kLongest) +
-         (text.size() > LogQuotes::kLongest ? "...\"" : "\"");
+  return '"' + ros1::shortened(text, LogQuotes::kLongest) + '"';
 }
 
 /// What the worst status of a message says; empty: the message cannot be read, or has none.

@@ -138,8 +138,6 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_node_handle,
           const std::string& name);
   ~Monitor() override;
-  Monitor(const Monitor&) = delete;
-  Monitor& operator=(const Monitor&) = delete;
 
   /// Judges no more, and writes what must not be lost.
   void finish() override;

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ros/text.h"
+#include "core/verdict/name_list.h"
 #include "self_awareness/core/stream/event.h"
-#include "self_awareness/ros/encoding.h"
 
 namespace self_awareness {
 namespace {
@@ -66,17 +65,9 @@ std::int64_t ClockContest::timeOf(std::int64_t ros_time, std::int64_t steady_tim
 }
 
 std::string ClockContest::rivals() const {
-  std::string names;
-  if (publishers_.size() > 1) {
-    std::size_t named = 0;
-    for (const std::string& publisher : publishers_) {
-      if (named == kMostPublishers) {
-        return names + " and " + std::to_string(publishers_.size() - named) + " more";
-      }
-      names += (named++ > 0 ? ", " : "") + ros1::printable(publisher, ros1::kLongestName);
-    }
-  }
-  return names;
+  return publishers_.size() > 1
+             ? core::listed({publishers_.begin(), publishers_.end()}, kMostPublishers)
+             : "";
 }
 
 }  // namespace self_awareness

@@ -59,8 +59,6 @@ class Discovery {
   /// Ends the thread and the subscriptions; waits for a call that is under way, to the master or a
   /// node.
   ~Discovery();
-  Discovery(const Discovery&) = delete;
-  Discovery& operator=(const Discovery&) = delete;
 
   /// Polls at once with what is wanted from now on.
   void setWanted(Wanted wanted);

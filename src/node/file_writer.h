@@ -39,8 +39,6 @@ class FileWriter {
 
   explicit FileWriter(double pause = kPause);
   ~FileWriter() { finish(); }
-  FileWriter(const FileWriter&) = delete;
-  FileWriter& operator=(const FileWriter&) = delete;
 
   /// Writes the file soon; does not wait for the disk.
   void add(File file);

@@ -91,8 +91,6 @@ class LiveSource {
   LiveSource(ros::CallbackQueue& queue, const ros::NodeHandle& node_handle,
              const LiveParameters& parameters, std::vector<std::string> services,
              Listener& listener);
-  LiveSource(const LiveSource&) = delete;
-  LiveSource& operator=(const LiveSource&) = delete;
 
   void start() { spinner_.start(); }
   /// The listener is not called any more, but by deliver() and report().

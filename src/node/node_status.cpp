@@ -6,6 +6,7 @@
 #include <iterator>
 #include <string>
 
+#include "core/verdict/name_list.h"
 #include "ros/text.h"
 #include "self_awareness/core/stream/event.h"
 
@@ -17,14 +18,13 @@ constexpr std::int64_t kWarning = 3 * core::kNanosecondsPerSecond;
 constexpr std::int64_t kError = 10 * core::kNanosecondsPerSecond;
 
 constexpr std::size_t kMostInMessage = 3;
-constexpr std::size_t kMostOfName = 100;  // bytes
 
 std::string describe(const ros1::Unheard& unheard) {
   if (unheard.node.empty()) {
     return unheard.why;
   }
-  return ros1::printable(unheard.node, kMostOfName) + " on " +
-         ros1::printable(unheard.topic, kMostOfName) + " (" + unheard.why + ")";
+  return ros1::printable(unheard.node, ros1::kLongestQuote) + " on " +
+         ros1::printable(unheard.topic, ros1::kLongestQuote) + " (" + unheard.why + ")";
 }
 
 }  // namespace
@@ -67,14 +67,8 @@ void tellUnheard(const std::vector<ros1::Unheard>& unheard, ros1::ListsAre lists
     return;
   }
   const std::vector<std::string> words = inWords(unheard);
-  std::string message = "not heard: ";
-  for (std::size_t i = 0; i < std::min(words.size(), kMostInMessage); ++i) {
-    message += (i > 0 ? ", " : "") + words[i];
-  }
-  if (words.size() > kMostInMessage) {
-    message += " and " + std::to_string(words.size() - kMostInMessage) + " more";
-  }
-  status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, message);
+  status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
+                      "not heard: " + core::listed(words, kMostInMessage));
   ros1::tellNumbered("not heard", words, lists, status);
 }
 

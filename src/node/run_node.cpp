@@ -51,8 +51,6 @@ class Leaving {
     signal_thread_.join();
     goodbye_thread_.join();
   }
-  Leaving(const Leaving&) = delete;
-  Leaving& operator=(const Leaving&) = delete;
 
   template <typename Change>
   void change(Change change) {

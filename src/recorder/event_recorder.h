@@ -60,8 +60,6 @@ class EventRecorder : public NodeProgram, public LiveSource::Listener {
   EventRecorder(ros::NodeHandle node_handle, const ros::NodeHandle& private_node_handle,
                 std::function<void()> end);
   ~EventRecorder() override;
-  EventRecorder(const EventRecorder&) = delete;
-  EventRecorder& operator=(const EventRecorder&) = delete;
 
   /// Ends the file.
   void finish() override;

@@ -24,8 +24,6 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestInConnection = 100;  // [bytes]
-
 /// Whether a node is `rostopic pub`, in any namespace.
 bool isRostopic(const std::string& source) {
   return source.substr(source.rfind('/') + 1) == "rostopic";
@@ -98,23 +96,21 @@ core::EventId internUpTo(std::size_t most, const core::EventType& type,
 std::string whyLeftOut(const std::string& topic) {
   return isLegalTopic(topic)
              ? ""
-             : "no node can subscribe to the topic '" + printable(topic, kLongestInConnection) +
-                   "': its name is illegal";
+             : "no node can subscribe to the topic " + quote(topic) + ": its name is illegal";
 }
 
 std::string whyLeftOut(const Connection& connection) {
   for (const std::string* name : {&connection.callerid, &connection.datatype}) {
     if (name->size() > kLongestName && isLegalTopic(connection.topic)) {
-      return "the name '" + printable(*name, kLongestInConnection) + "...' on the topic " +
-             printable(connection.topic, kLongestInConnection) + " is too long";
+      return "the name '" + printable(*name, kLongestQuote) + "...' on the topic " +
+             printable(connection.topic, kLongestQuote) + " is too long";
     }
   }
   const core::EventType made_up{"", "", connection.datatype};
   if (core::tellsMode(made_up) || core::isLatched(made_up) ||
       core::tellsList(made_up)) {  // nobody else makes them up
-    return "the name '" + printable(connection.datatype, kLongestInConnection) +
-           "' on the topic " + printable(connection.topic, kLongestInConnection) +
-           " is no name of a type";
+    return "the name " + quote(connection.datatype) + " on the topic " +
+           printable(connection.topic, kLongestQuote) + " is no name of a type";
   }
   return whyLeftOut(connection.topic);
 }

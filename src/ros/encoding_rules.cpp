@@ -13,13 +13,11 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestInRule = 100;  // of a stranger's text in an error [bytes]
-
 /// @throw std::invalid_argument if the classes of a datatype cannot be
 void checkClasses(const EncodingRules& rules, const std::string& datatype,
                   const ValueClasses& classes) {
   const std::string begin =
-      "encoding: the classes of " + printable(datatype, kLongestInRule) + " must be ";
+      "encoding: the classes of " + printable(datatype, kLongestQuote) + " must be ";
   if (rules.type_fields.count(datatype) == 0) {
     throw std::invalid_argument(begin + "those of one of its fields (type_fields)");
   }
@@ -53,8 +51,7 @@ std::string inShort(double value) {
 /// @throw std::invalid_argument if the mode that is there cannot be told
 void checkMode(const EncodingRules& rules) {
   const ModeField& mode = *rules.mode;
-  const std::string begin =
-      "encoding: the mode is told on '" + printable(mode.topic, kLongestInRule) + "'";
+  const std::string begin = "encoding: the mode is told on " + quote(mode.topic);
   if (!isPrintable(mode.topic) || !whyLeftOut(mode.topic).empty() || mode.topic[0] != '/') {
     throw std::invalid_argument(begin +
                                 ", which is not the name of a topic; it begins with a slash");
@@ -101,9 +98,8 @@ void EncodingRules::validate() const {
   }
   for (const auto& [datatype, field] : type_fields) {
     if (!isPrintable(datatype) || !isPrintable(field)) {
-      throw std::invalid_argument("encoding: the type field '" +
-                                  printable(datatype + ": " + field, kLongestInRule) +
-                                  "' is no UTF-8, or has control characters");
+      throw std::invalid_argument("encoding: the type field " + quote(datatype + ": " + field) +
+                                  " is no UTF-8, or has control characters");
     }
   }
   for (const auto& [datatype, its] : classes) {

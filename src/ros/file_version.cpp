@@ -3,12 +3,6 @@
 #include "text.h"
 
 namespace self_awareness::ros1 {
-namespace {
-
-constexpr std::size_t kLongestPackage = 32;  // of a stranger's text in an error [bytes]
-
-}  // namespace
-
 const char* const kPackageVersion = SELF_AWARENESS_VERSION;
 
 self_awareness::FileVersion versionOf(const FileKind& kind) {
@@ -39,7 +33,7 @@ std::string whyUnread(const self_awareness::FileVersion& version, const FileKind
   if (version.oldest_reader <= kind.format) {
     return "";
   }
-  return "written by a newer self_awareness (" + printable(version.package, kLongestPackage) +
+  return "written by a newer self_awareness (" + printable(version.package, kLongestQuote) +
          ", format " + std::to_string(version.format) + ", for readers of format " +
          std::to_string(version.oldest_reader) + " on; this is " + kPackageVersion + ", format " +
          std::to_string(kind.format) + "); update self_awareness on this machine";

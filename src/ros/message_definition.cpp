@@ -10,15 +10,10 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestInDefinition = 64;  // of a stranger's text in an error [bytes]
-constexpr std::size_t kMostDigits = 10;           // of a length of 32 bits
+constexpr std::size_t kMostDigits = 10;  // of a length of 32 bits
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::invalid_argument(what);
-}
-
-std::string quote(const std::string& text) {
-  return "'" + printable(text, kLongestInDefinition) + "'";
 }
 
 const std::map<std::string, std::uint64_t>& builtInSizes() {
@@ -175,7 +170,7 @@ MessageDefinition::Lines MessageDefinition::parse(std::istream& text, std::strin
 const MessageDefinition::Lines& MessageDefinition::linesOf(const std::string& type) const {
   const auto lines = types_.find(type);
   if (lines == types_.end()) {
-    fail("the definition of " + printable(type, kLongestInDefinition) + " is missing");
+    fail("the definition of " + printable(type, kLongestQuote) + " is missing");
   }
   return lines->second;
 }
@@ -193,9 +188,8 @@ MessageDefinition::Way MessageDefinition::wayTo(const std::string& type,
                                    [&](const Line& each) { return each.name == name; });
     if (line == lines.end()) {
       fail("has no field " + quote(name) +
-           (way.field.type == datatype_
-                ? ""
-                : " in its " + printable(way.field.type, kLongestInDefinition)));
+           (way.field.type == datatype_ ? ""
+                                        : " in its " + printable(way.field.type, kLongestQuote)));
     }
     for (auto before = lines.begin(); before != line; ++before) {
       expansion.append(*before, way.field.before);
@@ -212,10 +206,10 @@ void MessageDefinition::check(const std::string& type, bool numbers) const {
     fail("is a message itself; name one of its fields");
   }
   if (numbers && (!isBuiltIn(type) || type == "string" || type == "time" || type == "duration")) {
-    fail("is a " + printable(type, kLongestInDefinition) + "; only numbers have classes");
+    fail("is a " + printable(type, kLongestQuote) + "; only numbers have classes");
   }
   if (!numbers && !readable(type)) {
-    fail("is a " + printable(type, kLongestInDefinition) +
+    fail("is a " + printable(type, kLongestQuote) +
          "; only integers, bool and string tell what a message does");
   }
 }

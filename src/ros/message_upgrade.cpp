@@ -13,14 +13,8 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestInUpgrade = 64;  // of a stranger's text in an error [bytes]
-
 [[noreturn]] void failUpgrade(const std::string& what) {
   throw std::invalid_argument(what);
-}
-
-std::string quoted(const std::string& text) {
-  return printable(text, kLongestInUpgrade);
 }
 
 }  // namespace
@@ -86,8 +80,8 @@ class MessageUpgrade::Builder {
                           const MessageDefinition::Line& line) const {
     if (old.type != line.type || old.array != line.array) {
       failUpgrade("field " + line.name + " of " + type + " is of the type " +
-                  quoted(old.type + old.array) + " in the file, and here " + line.type +
-                  line.array);
+                  printable(old.type + old.array, kLongestQuote) + " in the file, and here " +
+                  line.type + line.array);
     }
     Layout::Field field;
     if (!sameLayout(line.type)) {

@@ -12,10 +12,7 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestQuotedPattern = 200;  // of a pattern in an error [bytes]
-
-constexpr std::size_t kLongestQuotedRule = 200;  // of a rule in an error [bytes]
-constexpr int kMostGroups = 10;                  // the whole name, and \1 to \9
+constexpr int kMostGroups = 10;  // the whole name, and \1 to \9
 
 std::vector<std::string> patternsOf(const std::vector<Rename>& renames) {
   std::vector<std::string> patterns;
@@ -34,14 +31,14 @@ NamePatterns::NamePatterns(const std::vector<std::string>& patterns) {
   int states = 0;
   for (const std::string& pattern : patterns) {
     if (!isPrintable(pattern)) {
-      throw std::invalid_argument("encoding: '" + printable(pattern, kLongestQuotedPattern) +
-                                  "' is no UTF-8, or has control characters; no name has any");
+      throw std::invalid_argument("encoding: " + quote(pattern) +
+                                  " is no UTF-8, or has control characters; no name has any");
     }
     auto compiled = std::make_unique<const re2::RE2>(pattern, options);
     if (!compiled->ok()) {
-      throw std::invalid_argument("encoding: '" + printable(pattern, kLongestQuotedPattern) +
-                                  "' is not a regular expression (of RE2): " +
-                                  printable(compiled->error(), kLongestQuotedPattern));
+      throw std::invalid_argument(
+          "encoding: " + quote(pattern) +
+          " is not a regular expression (of RE2): " + printable(compiled->error(), kLongestQuote));
     }
     states += compiled->ProgramSize();
     if (states > kMostStates) {
@@ -74,14 +71,13 @@ NameRenames::NameRenames(const std::vector<Rename>& renames) : patterns_(pattern
     } else if (name.size() > kLongestName || !isPrintable(name)) {
       problem = "is too long, is no UTF-8, or has control characters";
     } else if (!patterns_.all()[k]->CheckRewriteString(name, &problem)) {
-      problem = "does not fit its pattern (" + printable(problem, kLongestQuotedRule) + ")";
+      problem = "does not fit its pattern (" + printable(problem, kLongestQuote) + ")";
     } else {
       names_.push_back(name);
       continue;
     }
-    throw std::invalid_argument("encoding: the name '" + printable(name, kLongestQuotedRule) +
-                                "' that takes the place of '" +
-                                printable(renames[k].pattern, kLongestQuotedRule) + "' " +
+    throw std::invalid_argument("encoding: the name " + quote(name) +
+                                " that takes the place of " + quote(renames[k].pattern) + " " +
                                 problem);
   }
 }

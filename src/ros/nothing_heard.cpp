@@ -11,8 +11,6 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kMostOfName = 100;  // bytes
-
 /// What is published there is about all that run, whether that is a robot or not.
 const std::set<std::string> kOfEverybody{"/rosout",
                                          "/rosout_agg",
@@ -23,7 +21,7 @@ const std::set<std::string> kOfEverybody{"/rosout",
                                          "/diagnostics_toplevel_state"};
 
 std::string some(const std::set<std::string>& topics) {
-  return printable(*topics.begin(), kMostOfName) +
+  return printable(*topics.begin(), kLongestQuote) +
          (topics.size() > 1 ? " and " + std::to_string(topics.size() - 1) + " more" : "");
 }
 
@@ -34,7 +32,7 @@ std::string playersIn(const Graph& graph, const Encoder& encoder) {
   }
   std::string words;
   for (const auto& [player, number] : topics) {
-    words += (words.empty() ? "" : "; ") + printable(player, kMostOfName) + " plays " +
+    words += (words.empty() ? "" : "; ") + printable(player, kLongestQuote) + " plays " +
              std::to_string(number) + (number == 1 ? " topic" : " topics") +
              "; players are left out: use `score BAG` or `train BAG`, or `source: none` in the "
              "encoding";

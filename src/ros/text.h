@@ -15,7 +15,13 @@ bool isPrintable(std::string_view bytes);
 /// @param most so many bytes are read; a character that this cuts is left out
 std::string printable(std::string_view bytes, std::size_t most = std::string_view::npos);
 
-/// The same, with "..." at its end if bytes were left out.
+/// Longest text of a stranger in an error or another sentence [bytes].
+constexpr std::size_t kLongestQuote = 100;
+/// So much of such a text, in quotation marks.
+inline std::string quote(std::string_view bytes) {
+  return "'" + printable(bytes, kLongestQuote) + "'";
+}
+/// As printable(), with "..." at its end if bytes were left out.
 std::string shortened(std::string_view bytes, std::size_t most);
 
 /// Date and time in UTC of a time since 1970 [ns].

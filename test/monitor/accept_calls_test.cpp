@@ -137,7 +137,7 @@ TEST_F(AcceptCallsTest, ACallThatNamesNothingAcceptsNothingAndTellsWhatMayBeName
       "(silent), "
       "\"{component: /base, topic: /odom, kind: stranger}\" for 12 messages of it, "
       "\"{incident: 4}\" for /driver (silent)";
-  EXPECT_EQ(call({}, false), offers + ", \"{incident: 3}\" for /slam (silent)");
+  EXPECT_EQ(call({}, false), offers + " and \"{incident: 3}\" for /slam (silent)");
   EXPECT_EQ(call(back(""), false), "nothing is accepted");
   call(asked("/slam"));
   EXPECT_EQ(call(back(""), false), "name what is to be judged again: /slam");
@@ -204,7 +204,7 @@ TEST_F(AcceptCallsTest, OfConnectionsEachTopicIsTaken) {
   deaf[0].reason.topics = {"/cmd_vel", "/stop"};
   stands(core::Kind::kUnsubscribed, deaf);
   EXPECT_FALSE(has(acceptAlarm(), "nobody of that name")) << "/base is known";
-  EXPECT_EQ(accepted(), "/base on /cmd_vel (not subscribed), /base on /stop (not subscribed)");
+  EXPECT_EQ(accepted(), "/base on /cmd_vel (not subscribed) and /base on /stop (not subscribed)");
   EXPECT_TRUE(calls_.covers(*alarm_, vocabulary_));
   call(back("/base", "/stop"));
   EXPECT_FALSE(calls_.covers(*alarm_, vocabulary_));
@@ -222,7 +222,7 @@ TEST_F(AcceptCallsTest, OfAnIncidentItsVictimsAreNotTaken) {
   incident.victims = {"/slam"};
   incidents_.incidents = {incident};
   call(ofIncident(3));
-  EXPECT_EQ(accepted(), "/driver (silent), /base (silent)");
+  EXPECT_EQ(accepted(), "/driver (silent) and /base (silent)");
   call(back("/*"));
   incidents_.incidents[0].kind = "slow";
   call(ofIncident(3));
@@ -244,7 +244,7 @@ TEST_F(AcceptCallsTest, SeveralAreTakenInOneCall) {
   const std::string answer = call(request, false);
   EXPECT_TRUE(begins(answer, "2 of 3: normal from now on: /joystick on /joy (stranger), "));
   EXPECT_TRUE(has(answer, "refused: nobody: component: a name begins with a /"));
-  EXPECT_EQ(accepted(), "/joystick on /joy (stranger), /rqt on /plot (stranger)");
+  EXPECT_EQ(accepted(), "/joystick on /joy (stranger) and /rqt on /plot (stranger)");
   EXPECT_EQ(changes_, 1);
 }
 
@@ -282,7 +282,7 @@ TEST_F(AcceptCallsTest, AllThatFitsIsTakenBackAndElseItIsSaidWhatIsAccepted) {
   EXPECT_TRUE(has(call(back("/slam"), false),
                   "/slam is not accepted; these are: /driver on /scan (slow), "));
   EXPECT_TRUE(
-      begins(call(back("/driver")), "judged again: /driver on /scan (slow), /driver (stale)"));
+      begins(call(back("/driver")), "judged again: /driver on /scan (slow) and /driver (stale)"));
   EXPECT_EQ(accepted(), "/base");
   call(back("/base"));
   EXPECT_TRUE(has(call(back("/base"), false), "nothing is"));

@@ -49,7 +49,7 @@ TEST_F(ClockContestTest, TwoThatAgreeDisturbNobody) {
   rivalLooks(0);
   EXPECT_FALSE(contest_.contested());
   EXPECT_EQ(time_, ros_);
-  EXPECT_EQ(contest_.rivals(), "/a, /b");
+  EXPECT_EQ(contest_.rivals(), "/a and /b");
 }
 
 TEST_F(ClockContestTest, TimeGoesOnWhileTwoSetIt) {

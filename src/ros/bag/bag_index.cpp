@@ -11,7 +11,6 @@
 #include "../content_digest.h"
 #include "../text.h"
 #include "bag_records.h"
-#include "chunk_records.h"
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::ros1 {
@@ -22,7 +21,6 @@ using namespace bag_records;  // NOLINT: the format's words, in this file only
 constexpr std::uint64_t kIndexEntryBytes = 12;  // of a message in a record of the index
 // Entries that are read at once.
 constexpr std::uint64_t kEntriesPerPiece = 1 << 14;
-constexpr std::size_t kLongestQuotedName = 100;  // of a name in an error [bytes]
 
 struct ChunkInfo {
   std::uint64_t position = 0;
@@ -108,8 +106,8 @@ class IndexReader {
     const std::string topic(field(record.header, "topic"));
     const auto said = header.find("topic");
     if (said != header.end() && !isTheSame(topic, said->second)) {
-      throw FormatError("the connection " + std::to_string(id) + " is on " + quoted(topic) +
-                        " by its header, and on " + quoted(said->second) + " by its data");
+      throw FormatError("the connection " + std::to_string(id) + " is on " + quote(topic) +
+                        " by its header, and on " + quote(said->second) + " by its data");
     }
     ids_.emplace(id, ids_.size());
     index_.connections.push_back(connectionFrom(header, topic));
@@ -127,10 +125,6 @@ class IndexReader {
                             whole.compare(whole.size() - end.size(), end.size(), end) == 0);
   }
 
-  static std::string quoted(std::string_view name) {
-    return "'" + printable(name, kLongestQuotedName) + "'";
-  }
-
   /// A connection that is there again, as it is in every chunk, must be what it was.
   void checkConnection(std::uint32_t id, std::string_view topic, std::string_view data) const {
     const auto known = ids_.find(id);
@@ -140,7 +134,7 @@ class IndexReader {
     const ConnectionRecord& first = connections_[known->second];
     if (topic != first.topic) {
       throw FormatError("the connection " + std::to_string(id) + " is there twice, on " +
-                        quoted(first.topic) + " and on " + quoted(topic));
+                        quote(first.topic) + " and on " + quote(topic));
     }
     if (data == first.data) {  // so it mostly is: to compare the fields takes much longer
       return;
@@ -154,10 +148,10 @@ class IndexReader {
     const Connection& before = index_.connections[known->second];
     if (again.datatype != before.datatype || again.md5sum != before.md5sum ||
         again.definition != before.definition || again.callerid != before.callerid) {
-      throw FormatError("the connection " + std::to_string(id) + ", on " + quoted(topic) +
-                        ", is there twice, with " + quoted(before.datatype) + " from " +
-                        quoted(before.callerid) + " and with " + quoted(again.datatype) +
-                        " from " + quoted(again.callerid) +
+      throw FormatError("the connection " + std::to_string(id) + ", on " + quote(topic) +
+                        ", is there twice, with " + quote(before.datatype) + " from " +
+                        quote(before.callerid) + " and with " + quote(again.datatype) +
+                        " from " + quote(again.callerid) +
                         (again.datatype == before.datatype ? " of another definition" : ""));
     }
   }

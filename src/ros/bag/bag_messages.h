@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bag_index.h"
-#include "chunk_records.h"
+#include "bag_records.h"
 #include "self_awareness/ros/attribute_reader.h"
 
 namespace self_awareness::ros1 {
@@ -35,15 +35,15 @@ class BagMessages {
   struct KeptChunk {
     std::uint64_t position = 0;
     std::uint64_t unpacked = 0;  // in memory [bytes]
-    std::unique_ptr<const ChunkRecords> records;
+    std::unique_ptr<const bag_records::ChunkRecords> records;
   };
 
   /// The records of a chunk.
-  const ChunkRecords& records(std::uint64_t position);
+  const bag_records::ChunkRecords& records(std::uint64_t position);
   /// Forgets those that were read longest ago, until there is room for another one.
   void makeRoom(std::uint64_t unpacked);
   /// Where a message lies; it must be the one that the index says.
-  bag_records::PiecesOfFile::Head head(const ChunkRecords& records,
+  bag_records::PiecesOfFile::Head head(const bag_records::ChunkRecords& records,
                                        const BagIndexEntry& entry) const;
 
   bag_records::PiecesOfFile file_;

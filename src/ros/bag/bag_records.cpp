@@ -1,8 +1,13 @@
 #include "bag_records.h"
 
+#include <rosbag/chunked_file.h>
+
 #include <algorithm>
 #include <boost/filesystem/operations.hpp>
+#include <new>
+#include <string>
 
+#include "../text.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::ros1::bag_records {
@@ -11,6 +16,16 @@ namespace {
 constexpr std::uint64_t kLengthBytes = sizeof(std::uint32_t);  // of a length in the file
 // Read together with what is asked for: most headers and messages are short.
 constexpr std::uint64_t kReadAhead = 1024;
+
+rosbag::CompressionType compressionOf(const Chunk& chunk) {
+  if (chunk.compression == "bz2") {
+    return rosbag::compression::BZ2;
+  }
+  if (chunk.compression == "lz4") {
+    return rosbag::compression::LZ4;
+  }
+  throw FormatError("unknown compression " + quote(chunk.compression));
+}
 
 }  // namespace
 
@@ -112,6 +127,59 @@ Chunk::Chunk(PiecesOfFile& file, std::uint64_t position) {
   if (unpacked_bytes > kLargestChunk || unpacked_bytes > most * size) {
     throw FormatError("a chunk that announces too much");
   }
+}
+
+ChunkRecords::ChunkRecords(PiecesOfFile& file, const Chunk& chunk)
+    : file_(&file), begin_(chunk.begin), size_(chunk.end - chunk.begin) {
+  if (!chunk.isPacked()) {
+    return;
+  }
+  const rosbag::CompressionType compression = compressionOf(chunk);
+  std::string packed(file.at(chunk.begin, chunk.end - chunk.begin));
+  size_ = chunk.unpacked_bytes;
+  // calloc() takes no memory for zeros that nobody writes: the chunk may hold less than it says.
+  unpacked_.reset(static_cast<char*>(std::calloc(std::max<std::size_t>(size_, 1), 1)));
+  if (!unpacked_) {
+    throw std::bad_alloc();
+  }
+  rosbag::ChunkedFile().decompress(
+      compression, reinterpret_cast<std::uint8_t*>(unpacked_.get()), chunk.unpacked_bytes,
+      reinterpret_cast<std::uint8_t*>(&packed[0]), static_cast<unsigned int>(packed.size()));
+}
+
+PiecesOfFile::Head ChunkRecords::head(std::uint64_t place) const {
+  PiecesOfFile::Head head;
+  if (unpacked_) {
+    std::string_view bytes(unpacked_.get(), size_);
+    take(bytes, place);
+    head.header = takeBlock(bytes);
+    const auto size = takeNumber<std::uint32_t>(bytes);
+    head.data = size_ - bytes.size();
+    head.end = head.data + size;
+  } else {
+    head = file_->head(begin_ + place);
+    head.data -= begin_;
+    head.end -= begin_;
+  }
+  if (head.end > size_) {
+    throw FormatError("a message is cut off");
+  }
+  return head;
+}
+
+std::string_view ChunkRecords::data(const PiecesOfFile::Head& head, std::uint64_t ahead) const {
+  const std::uint64_t size = head.end - head.data;
+  std::string_view bytes = unpacked_ ? std::string_view(unpacked_.get() + head.data, size)
+                                     : file_->at(begin_ + head.data, size, ahead);
+  return take(bytes, size);
+}
+
+PiecesOfFile::Head ChunkRecords::message(std::uint64_t place) const {
+  PiecesOfFile::Head found = head(place);
+  while (opOf(found.header) == Op::kConnection) {
+    found = head(found.end);
+  }
+  return found;
 }
 
 }  // namespace self_awareness::ros1::bag_records

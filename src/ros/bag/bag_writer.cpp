@@ -80,8 +80,6 @@ BagWriter::BagWriter(std::string path, Chunks chunks, std::string named)
   writeFileHeader(0);
 }
 
-BagWriter::~BagWriter() = default;
-
 void BagWriter::write(const ros::Time& stamp, const Topic& topic, const Type& type) {
   const auto [entry, is_new] =
       numbers_.try_emplace(topic.name, static_cast<std::uint32_t>(connections_.size()));

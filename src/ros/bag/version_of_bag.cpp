@@ -17,8 +17,6 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::size_t kLongestKind = 32;  // of a stranger's text in an error [bytes]
-
 bool tellsVersion(const Connection& connection) {
   return connection.topic == kVersionTopic && holds<self_awareness::FileVersion>(connection);
 }
@@ -29,7 +27,7 @@ self_awareness::FileVersion versionOfKind(const std::string& path, const BagInde
   const std::optional<self_awareness::FileVersion> version = versionOfBag(path, index);
   if (version && version->kind != kind.name) {
     throw BagError(path + ": not of the kind " + kind.name +
-                   "; the file says that it is: " + printable(version->kind, kLongestKind));
+                   "; the file says that it is: " + printable(version->kind, kLongestQuote));
   }
   return version.value_or(firstVersionOf(kind));
 }

@@ -40,8 +40,6 @@ constexpr double kHeartbeat = 1;  // [s], as ~diagnostic_period is by default
 ResultBag::ResultBag(const std::string& path, const std::string& named)
     : bag_(path, BagWriter::Chunks::kCompressed, named) {}
 
-ResultBag::~ResultBag() = default;
-
 template <typename Message>
 void ResultBag::write(const std::string& topic, bool latching, std::int64_t now,
                       const Message& message) {

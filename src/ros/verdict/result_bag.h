@@ -31,9 +31,6 @@ class ResultBag {
   /// Creates the file, or empties the one that is there. Without close() it is of no use.
   /// @param named what errors call the file; empty: by its path
   explicit ResultBag(const std::string& path, const std::string& named = "");
-  ~ResultBag();
-  ResultBag(const ResultBag&) = delete;
-  ResultBag& operator=(const ResultBag&) = delete;
 
   /// @param now recording time of the message [ns]; times before 1970 count as 1970
   void writeStatus(std::int64_t now, const self_awareness::SelfAwareness& status);

@@ -13,7 +13,7 @@
 
 namespace self_awareness::ros1 {
 
-/// Writes a bag, message by message.
+/// Writes a bag, message by message. One that was not closed stays as it is.
 ///
 /// rosbag's writer ends the program if the disk is full: its destructor throws.
 class BagWriter {
@@ -39,10 +39,6 @@ class BagWriter {
   /// @throw BagError if it cannot be written
   explicit BagWriter(std::string path, Chunks chunks = Chunks::kOfOneMessage,
                      std::string named = "");
-  /// A bag that was not closed stays as it is.
-  ~BagWriter();
-  BagWriter(const BagWriter&) = delete;
-  BagWriter& operator=(const BagWriter&) = delete;
 
   /// @param topic its first message says what the bag holds of it
   /// @param stamp of the message in the bag, not 0
