@@ -4,7 +4,6 @@
 #include <ros/service_server.h>
 
 #include <atomic>
-#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>

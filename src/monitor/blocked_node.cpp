@@ -4,7 +4,6 @@
 #include <iterator>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "core/verdict/name_list.h"
 #include "node/live_source.h"

@@ -7,7 +7,6 @@
 
 #include "diagnostics.h"
 #include "ros/text.h"
-#include "self_awareness/ros/bag/event_log_writer.h"
 
 namespace self_awareness {
 

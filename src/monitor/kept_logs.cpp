@@ -7,7 +7,6 @@
 
 #include "diagnostics.h"
 #include "recorder_folder.h"
-#include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/ros_time.h"
 #include "session.h"
 

@@ -3,7 +3,6 @@
 #include <ros/console.h>
 #include <ros/this_node.h>
 
-#include <stdexcept>
 #include <utility>
 
 #include "node/processor_watch.h"

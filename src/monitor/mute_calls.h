@@ -3,7 +3,6 @@
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

@@ -5,7 +5,6 @@
 #include "diagnostics.h"
 #include "node/live_source.h"
 #include "self_awareness/core/stream/event.h"
-#include "self_awareness/ros/encoding.h"
 #include "session.h"
 
 namespace self_awareness {

@@ -7,7 +7,6 @@
 #include <ctime>
 #include <regex>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "self_awareness/core/stream/event.h"

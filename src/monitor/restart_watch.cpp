@@ -3,8 +3,6 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <set>
-#include <string>
 
 #include "diagnostics.h"
 #include "node/live_source.h"

@@ -3,8 +3,6 @@
 #include <ros/console.h>
 #include <ros/this_node.h>
 
-#include <algorithm>
-#include <map>
 #include <utility>
 
 #include "self_awareness/ros/stable_name.h"

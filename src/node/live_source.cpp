@@ -1,7 +1,5 @@
 #include "live_source.h"
 
-#include <utility>
-
 #include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness {

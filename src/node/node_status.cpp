@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <string>
 
 #include "core/verdict/name_list.h"
 #include "ros/text.h"

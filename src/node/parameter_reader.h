@@ -3,7 +3,6 @@
 #include <ros/node_handle.h>
 
 #include <set>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>

@@ -6,7 +6,6 @@
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
 #include <ctime>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 

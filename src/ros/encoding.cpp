@@ -2,13 +2,7 @@
 
 #include <ros/names.h>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <functional>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
 #include "message_definition.h"

@@ -7,12 +7,9 @@
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <iterator>
-#include <vector>
 
 #include "master_calls.h"
-#include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"
 

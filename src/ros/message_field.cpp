@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "message_cursor.h"
-#include "message_definition.h"
 
 namespace self_awareness::ros1 {
 

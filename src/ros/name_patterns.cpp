@@ -1,7 +1,5 @@
 #include "name_patterns.h"
 
-#include <re2/stringpiece.h>
-
 #include <algorithm>
 #include <array>
 #include <stdexcept>

@@ -4,9 +4,6 @@
 
 #include <cstdint>
 #include <map>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include "../await.h"
 #include "../in_folder.h"

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
-#include <string>
-
 #include "../in_folder.h"
 #include "ros/verdict/kept_files.h"
 

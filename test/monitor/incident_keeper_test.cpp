@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <optional>
-#include <string>
-
 #include "../in_folder.h"
 #include "../times.h"
 #include "ros/verdict/kept_files.h"

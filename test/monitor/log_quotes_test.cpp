@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 #include <rosgraph_msgs/Log.h>
 
-#include <string>
-
 #include "../problem.h"
 #include "../ros/serialized.h"
 

@@ -2,11 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
-#include "self_awareness/ros/encoding.h"
-
 namespace self_awareness {
 namespace {
 

@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <set>
 #include <stdexcept>
-#include <string>
 
 #include "../in_folder.h"
 #include "../problem.h"

@@ -4,11 +4,7 @@
 #include <std_msgs/String.h>
 
 #include <algorithm>
-#include <optional>
-#include <set>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "../core/evidence/recordings.h"
 #include "../ros/serialized.h"

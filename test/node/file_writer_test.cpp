@@ -5,8 +5,6 @@
 #include <atomic>
 #include <future>
 #include <stdexcept>
-#include <string>
-#include <thread>
 #include <vector>
 
 #include "../await.h"

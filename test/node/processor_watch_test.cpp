@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
-
 #include "../times.h"
 #include "self_awareness/core/stream/event.h"
 

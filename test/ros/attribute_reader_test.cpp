@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <string>
-#include <vector>
 
 #include "self_awareness/core/stream/event.h"
 #include "serialized.h"

@@ -7,18 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
-#include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "../problem.h"
 #include "../times.h"
 #include "self_awareness/core/stream/mode.h"
-#include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/stable_name.h"
 #include "serialized.h"
 

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <set>
-#include <string>
-
 namespace self_awareness::ros1 {
 namespace {
 

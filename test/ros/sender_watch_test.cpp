@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <optional>
-#include <string>
-
 #include "../times.h"
 
 namespace self_awareness::ros1 {

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
-#include <vector>
 
 #include "../message_field.h"
 #include "../text.h"

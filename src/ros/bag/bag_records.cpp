@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <boost/filesystem/operations.hpp>
 #include <new>
-#include <string>
 
 #include "../text.h"
 #include "self_awareness/core/stream/event.h"

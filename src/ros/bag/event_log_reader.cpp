@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "../text.h"
 #include "bag_index.h"

@@ -1,13 +1,11 @@
 #include "self_awareness/ros/bag/event_log_writer.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <random>
 #include <utility>
 
 #include "packed_events.h"
 #include "self_awareness/EventLogGraph.h"
-#include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/encoding_message.h"
 #include "self_awareness/ros/file_version.h"
 #include "self_awareness/ros/output_file.h"

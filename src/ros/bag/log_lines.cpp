@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <iterator>
-#include <optional>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "../message_cursor.h"
 #include "../text.h"
 #include "recording_files.h"
-#include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/stable_name.h"
 #include "set_back.h"
 

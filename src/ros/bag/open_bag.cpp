@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <fstream>
 #include <new>
-#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <vector>

@@ -3,7 +3,6 @@
 #include <rosbag/exceptions.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <iterator>
 #include <limits>
 #include <set>

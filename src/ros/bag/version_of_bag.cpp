@@ -3,7 +3,6 @@
 #include <rosbag/exceptions.h>
 
 #include <algorithm>
-#include <optional>
 #include <stdexcept>
 
 #include "../text.h"

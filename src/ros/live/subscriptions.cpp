@@ -8,7 +8,6 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
 #include <iterator>
-#include <utility>
 
 #include "../text.h"
 #include "self_awareness/core/stream/event.h"

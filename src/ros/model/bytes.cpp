@@ -1,6 +1,5 @@
 #include "bytes.h"
 
-#include "../check.h"
 #include "../text.h"
 
 namespace self_awareness::ros1 {

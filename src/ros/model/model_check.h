@@ -1,9 +1,5 @@
 #pragma once
 
-#include <set>
-#include <string>
-#include <vector>
-
 #include "self_awareness/core/evidence/count/statistics.h"
 #include "self_awareness/ros/model/model_file.h"
 

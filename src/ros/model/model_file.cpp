@@ -6,11 +6,8 @@
 #include <algorithm>
 #include <boost/filesystem/operations.hpp>
 #include <map>
-#include <memory>
 #include <new>
 #include <optional>
-#include <stdexcept>
-#include <utility>
 
 #include "../bag/bag_index.h"
 #include "../bag/stored_messages.h"

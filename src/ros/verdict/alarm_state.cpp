@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
 
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/ros_time.h"

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <map>
-#include <vector>
 
 #include "alarm_state.h"
 #include "self_awareness/core/evidence/tuning.h"

@@ -8,10 +8,7 @@
 #include <cstdint>
 #include <limits>
 #include <new>
-#include <optional>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "../bag/bag_index.h"
 #include "../bag/stored_messages.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <boost/filesystem/operations.hpp>
 #include <utility>
-#include <vector>
 
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/file_version.h"

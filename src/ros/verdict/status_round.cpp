@@ -3,7 +3,6 @@
 #include <ros/serialization.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <set>
 #include <utility>
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include <algorithm>
 #include <boost/filesystem.hpp>
 #include <string>
 #include <vector>

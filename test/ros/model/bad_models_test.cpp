@@ -4,7 +4,6 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cstdint>
 #include <functional>

@@ -2,17 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <limits>
-#include <map>
-#include <optional>
-#include <set>
 #include <stdexcept>
-#include <string>
-#include <utility>
-#include <vector>
 
 namespace self_awareness::ros1 {
 namespace {

@@ -4,7 +4,6 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>

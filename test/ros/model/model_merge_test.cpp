@@ -7,7 +7,6 @@
 #include <set>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "../../problem.h"
 #include "core/paper/delay_trainer.h"

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <vector>
-
 #include "../../times.h"
 
 namespace self_awareness::ros1 {

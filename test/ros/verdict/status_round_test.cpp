@@ -4,11 +4,7 @@
 #include <ros/serialization.h>
 
 #include <algorithm>
-#include <cstddef>
-#include <map>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "../../problem.h"
 #include "ros/verdict/diagnostic_status.h"
