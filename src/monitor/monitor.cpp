@@ -210,16 +210,4 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   alarm_.add(said, session_->vocabulary(), session_->window(), circumstances);
 }
 
-std::string Monitor::mutedBy(const std::string& component) const {
-  return mutes_.ofComponent(component);
-}
-
-void Monitor::standDown(const std::string& message) {
-  alarm_.standDown(message, live_->now());
-}
-
-void Monitor::notNormal(const std::string& why) {
-  kept_logs_.leaveOut(why);
-}
-
 }  // namespace self_awareness

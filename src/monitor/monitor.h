@@ -159,10 +159,12 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   const MonitorParameters& parameters() const override { return parameters_; }
   const LiveSource& live() const override { return *live_; }
   const ros1::AlarmState& alarm() const override { return alarm_; }
-  std::string mutedBy(const std::string& component) const override;
-  void standDown(const std::string& message) override;
+  std::string mutedBy(const std::string& component) const override {
+    return mutes_.ofComponent(component);
+  }
+  void standDown(const std::string& message) override { alarm_.standDown(message, live_->now()); }
   void nearMiss(const core::Alarm& alarm) override { incidents_.addNearMiss(alarm); }
-  void notNormal(const std::string& why) override;
+  void notNormal(const std::string& why) override { kept_logs_.leaveOut(why); }
   void report() override { live_->report(); }
 
   /// Offers the services of all parts. Returns their full names.

@@ -240,10 +240,12 @@ std::string Session::mode(std::int64_t now) const {
 LiveSource::Wanted Session::wanted(const std::string& node, double poll_interval) const {
   LiveSource::Wanted wanted;
   wanted.encoder = encoder_;
+  ros1::OwnOutput::Known known;
   for (const core::EventType& type : types()) {
     wanted.model_topics.insert(type.scope);
+    known.insert({type.source, type.scope});
   }
-  wanted.own_output = ownOutput(node);
+  wanted.own_output = {node, std::move(known), encoder_};
   wanted.window = window();
   wanted.hold = std::llround((poll_interval + kToBeKnown) * 1e9);
   wanted.tick = ros::WallDuration(core::toSeconds(window()) / kTicksPerWindow);
@@ -261,14 +263,6 @@ std::vector<core::EventId> Session::typesOf(const ros1::Publication& publication
     }
   }
   return ids;
-}
-
-ros1::OwnOutput Session::ownOutput(const std::string& node) const {
-  ros1::OwnOutput::Known known;
-  for (const core::EventType& type : types()) {
-    known.insert({type.source, type.scope});
-  }
-  return {node, std::move(known), encoder_};
 }
 
 void Session::setSenders(const core::Senders& senders) {

@@ -120,8 +120,6 @@ class Session {
   /// Takes in what a window says of components.
   void onShares(const core::evidence::Shares& shares);
   core::EventId intern(const core::EventType& type);
-  /// What the process `node` (full name) publishes and the model does not know.
-  ros1::OwnOutput ownOutput(const std::string& node) const;
   /// An event type as people read it, without its datatype.
   std::string sourceAndTopic(core::EventId id) const;
   std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters);

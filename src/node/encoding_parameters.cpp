@@ -22,14 +22,15 @@ constexpr char kNamespace[] = "encoding";
                               "; config/encoding.yaml is an example");
 }
 
-std::vector<std::string> textsOf(const std::string& name, XmlRpcValue& value) {
+std::vector<std::string> textsOf(const std::string& name, XmlRpcValue& value,
+                                 const char* must_be = "a list of regular expressions") {
   std::vector<std::string> texts;
   if (value.getType() != XmlRpcValue::TypeArray) {
-    fail(name, "a list of regular expressions");
+    fail(name, must_be);
   }
   for (int i = 0; i < value.size(); ++i) {
     if (value[i].getType() != XmlRpcValue::TypeString) {
-      fail(name, "a list of regular expressions");
+      fail(name, must_be);
     }
     texts.push_back(static_cast<std::string>(value[i]));
   }
@@ -43,13 +44,11 @@ std::vector<ros1::Rename> renamesOf(const std::string& name, XmlRpcValue& value)
     fail(name, kForm);
   }
   for (int i = 0; i < value.size(); ++i) {
-    if (value[i].getType() != XmlRpcValue::TypeArray || value[i].size() != 2 ||
-        value[i][0].getType() != XmlRpcValue::TypeString ||
-        value[i][1].getType() != XmlRpcValue::TypeString) {
+    const std::vector<std::string> pair = textsOf(name, value[i], kForm);
+    if (pair.size() != 2) {
       fail(name, kForm);
     }
-    renames.push_back(
-        {static_cast<std::string>(value[i][0]), static_cast<std::string>(value[i][1])});
+    renames.push_back({pair[0], pair[1]});
   }
   return renames;
 }

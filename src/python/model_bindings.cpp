@@ -13,7 +13,7 @@
 
 #include "bindings.h"
 #include "core/evidence/count/starts.h"
-#include "self_awareness/ros/model/model_bytes.h"
+#include "self_awareness/core/verdict/suspect.h"
 #include "self_awareness/ros/model/model_file.h"
 #include "self_awareness/ros/model/model_merge.h"
 

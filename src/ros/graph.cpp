@@ -1,10 +1,7 @@
 #include "self_awareness/ros/graph.h"
 
-#include <ros/master.h>
 #include <ros/network.h>
-#include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpcException.h>
-#include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
 #include <iterator>
@@ -15,17 +12,6 @@
 
 namespace self_awareness::ros1 {
 namespace {
-
-std::optional<XmlRpc::XmlRpcValue> ask(const std::string& method) {
-  XmlRpc::XmlRpcValue request;
-  request[0] = ros::this_node::getName();
-  XmlRpc::XmlRpcValue response;
-  XmlRpc::XmlRpcValue payload;
-  if (!ros::master::execute(method, request, response, payload, false)) {
-    return std::nullopt;
-  }
-  return payload;
-}
 
 // An entry of the master's state: [topic, [node, ...]].
 void addNodes(XmlRpc::XmlRpcValue& entries, std::set<std::string> Graph::Topic::*nodes,
@@ -75,8 +61,8 @@ void forEachGraph(const std::vector<GraphChange>& changes,
 }
 
 std::optional<SystemState> fetchSystemState() {
-  std::optional<XmlRpc::XmlRpcValue> state = ask("getSystemState");
-  std::optional<XmlRpc::XmlRpcValue> types = ask("getTopicTypes");
+  std::optional<XmlRpc::XmlRpcValue> state = askMaster("getSystemState");
+  std::optional<XmlRpc::XmlRpcValue> types = askMaster("getTopicTypes");
   if (!state || !types) {
     return std::nullopt;
   }

@@ -34,6 +34,15 @@ std::optional<XmlRpcValue> payloadOf(const std::string& method, XmlRpcValue& res
 
 }  // namespace
 
+std::optional<XmlRpcValue> askMaster(const std::string& method) {
+  XmlRpcValue request;
+  request[0] = ros::this_node::getName();
+  XmlRpcValue response;
+  XmlRpcValue payload;
+  return ros::master::execute(method, request, response, payload, false) ? std::optional(payload)
+                                                                         : std::nullopt;
+}
+
 void MasterCalls::add(const std::string& method, const std::vector<std::string>& arguments) {
   Call call{method, {}};
   call.parameters[0] = ros::this_node::getName();

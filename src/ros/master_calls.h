@@ -8,6 +8,10 @@
 
 namespace self_awareness::ros1 {
 
+/// Asks the master by a method without arguments, and blocks until it answers; none if it does
+/// not.
+std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method);
+
 /// Calls to the master that are made together: one by one, a few hundred would take the master,
 /// and all who ask it, a good part of each second.
 class MasterCalls {

@@ -22,7 +22,7 @@
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
-#include "self_awareness/ros/model/model_bytes.h"
+#include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::ros1 {
 namespace {

@@ -24,7 +24,6 @@
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/learn.h"
 #include "self_awareness/core/verdict/detector.h"
-#include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::core::evidence {

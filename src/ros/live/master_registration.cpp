@@ -1,7 +1,6 @@
 #include "self_awareness/ros/live/master_registration.h"
 
 #include <ros/connection_manager.h>
-#include <ros/master.h>
 #include <ros/names.h>
 #include <ros/network.h>
 #include <ros/publication.h>
@@ -48,16 +47,13 @@ MasterRegistration::MasterRegistration(std::vector<std::string> services)
 }
 
 MasterRegistration::Master MasterRegistration::check() {
-  XmlRpcValue request;
-  request[0] = ros::this_node::getName();
-  XmlRpcValue response;
-  XmlRpcValue pid;
-  if (!ros::master::execute("getPid", request, response, pid, false) ||
-      pid.getType() != XmlRpcValue::TypeInt) {
+  std::optional<XmlRpcValue> answer = askMaster("getPid");
+  if (!answer || answer->getType() != XmlRpcValue::TypeInt) {
     return Master::kAway;
   }
-  const bool restarted = master_pid_ && *master_pid_ != static_cast<int>(pid);
-  master_pid_ = static_cast<int>(pid);
+  const int pid = *answer;
+  const bool restarted = master_pid_ && *master_pid_ != pid;
+  master_pid_ = pid;
   return restarted ? Master::kRestarted : Master::kSame;
 }
 

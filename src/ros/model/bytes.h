@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../check.h"
+#include "../text.h"
 
 namespace self_awareness::ros1 {
 
@@ -134,7 +135,13 @@ class ByteReader {
   bool has(std::uint32_t format) const { return format_ >= format; }
   /// The length of a list: each of its elements takes a byte at least.
   /// @param each memory that an element takes [bytes]
-  std::size_t length(std::size_t each);
+  std::size_t length(std::size_t each) {
+    const std::uint64_t number = readNumber();
+    check(number <= static_cast<std::size_t>(end_ - next_), kTooShort);
+    memory_ += number * each;
+    check(memory_ <= most_, "there is too much in it");
+    return number;
+  }
   bool done() const { return next_ == end_; }
 
  private:
@@ -161,7 +168,12 @@ class ByteReader {
       fields(*this, value);
     }
   }
-  void read(std::string& text);
+  void read(std::string& text) {
+    text.resize(length(1));
+    take(text.data(), text.size());
+    check(text.size() <= kLongestText && isPrintable(text),
+          "a text in it is no UTF-8, has control characters, or is too long");
+  }
   void read(std::vector<std::uint8_t>& bytes) {
     bytes.resize(length(1));
     take(bytes.data(), bytes.size());
@@ -207,10 +219,28 @@ class ByteReader {
       read(value.emplace());
     }
   }
-  std::uint64_t readNumber();
-  void take(void* data, std::size_t size);
+  std::uint64_t readNumber() {
+    std::uint64_t number = 0;
+    for (unsigned shift = 0;; shift += 7) {
+      check(next_ != end_, kTooShort);
+      const std::uint64_t bits = *next_ % 128U;
+      check(shift < 64 && bits << shift >> shift == bits, "a number in it cannot be");
+      number |= bits << shift;
+      if (*next_++ < 128) {
+        return number;
+      }
+    }
+  }
+  void take(void* data, std::size_t size) {
+    check(size <= static_cast<std::size_t>(end_ - next_), kTooShort);
+    if (size > 0) {
+      std::memcpy(data, next_, size);
+      next_ += size;
+    }
+  }
 
   static constexpr char kTwice[] = "something is in it twice";
+  static constexpr char kTooShort[] = "it ends too soon, or a length in it is wrong";
 
   const std::uint8_t* next_;
   const std::uint8_t* end_;

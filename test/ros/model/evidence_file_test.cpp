@@ -11,7 +11,7 @@
 
 #include "model_file_case.h"
 #include "self_awareness/core/evidence/channel/track.h"
-#include "self_awareness/ros/model/model_bytes.h"
+#include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::ros1 {
 namespace {

@@ -14,7 +14,6 @@
 
 #include "model_file_case.h"
 #include "ros/model/model_fields.h"
-#include "self_awareness/ros/model/model_bytes.h"
 
 namespace self_awareness::ros1 {
 namespace {

@@ -46,4 +46,9 @@ void saveModel(const TrainedModel& model, const std::string& path);
 /// @throw ModelFileError if the file is missing, not a model, too new for this version, or damaged
 TrainedModel loadModel(const std::string& path, ModelCounts counts = ModelCounts::kAll);
 
+/// A model as bytes for another process, with the counts that it holds.
+std::string toBytes(const TrainedModel& model);
+/// @throw std::invalid_argument if the bytes are of another version of the message, or damaged
+TrainedModel fromBytes(const std::string& bytes);
+
 }  // namespace self_awareness::ros1
