@@ -1,6 +1,16 @@
+// What is said of who publishes and subscribes to what, without a master.
+
 #include "self_awareness/ros/graph.h"
 
 #include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "ros/nothing_heard.h"
+#include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/named_once.h"
+#include "self_awareness/ros/own_output.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -74,6 +84,120 @@ TEST(GraphOfTheRobot, KnowsOnWhichComputersSourcesRun) {
   addEdges(graph, "/self_awareness", Encoder({}, nullptr), edges);
   EXPECT_EQ(edges.hostOf("/laser"), "base");
   EXPECT_EQ(edges.hostOf("/view"), "") << "it runs on two";
+}
+
+using Topics = std::set<std::string>;
+
+Topics choose(SubscribePolicy policy) {
+  Graph graph;
+  graph.topics["/scan"] = {"sensor_msgs/LaserScan", {"/player"}, {"/slam", "/self_awareness"}};
+  graph.topics["/camera/points"] = {"sensor_msgs/PointCloud2", {"/camera"}, {}};
+  graph.topics["/camera/rect"] = {"sensor_msgs/Image", {"/camera"}, {"/self_awareness"}};
+  graph.topics["/goal"] = {"geometry_msgs/PoseStamped", {}, {"/navigation"}};
+  graph.topics["/clock"] = {"rosgraph_msgs/Clock", {"/gazebo"}, {"/slam"}};
+  return chooseTopics(
+      graph, policy, {"/pose"}, [](const std::string& topic) { return topic != "/clock"; },
+      [](const std::string& node) { return node != "/self_awareness"; });
+}
+
+TEST(ChooseTopics, UsedLeavesLazyPublishersAsleepAllDoesNotAndModelTakesTheModelsOnly) {
+  EXPECT_EQ(choose(SubscribePolicy::kUsed), (Topics{"/pose", "/scan"}));
+  EXPECT_EQ(choose(SubscribePolicy::kAll),
+            (Topics{"/camera/points", "/camera/rect", "/pose", "/scan"}));
+  EXPECT_EQ(choose(SubscribePolicy::kModel), (Topics{"/pose"})) << "published or not";
+}
+
+TEST(ChooseTopics, LeavesOutWhatRoscppCannotSubscribeTo) {
+  Graph graph;
+  const std::string longest = "/" + std::string(kLongestName - 1, 'a');
+  for (const std::string& name : {std::string("/foo-bar"), std::string("/a b"),
+                                  std::string("/x:y"), std::string("/\xc3\xbc"), std::string("~x"),
+                                  std::string(), longest + "a", longest, std::string("/a_1/B")}) {
+    graph.topics[name] = {"std_msgs/String", {"/anybody"}, {"/other"}};
+  }
+  const Encoder encoder(EncodingRules(), [](const core::EventType& /*type*/) { return 0; });
+  EXPECT_EQ(chooseTopics(
+                graph, SubscribePolicy::kAll, {"/scan-front", "/scan"},
+                [&](const std::string& topic) { return encoder.includesTopic(topic); },
+                [&](const std::string& node) { return encoder.listens(node); }),
+            (Topics{"/a_1/B", longest, "/scan"}));
+}
+
+std::shared_ptr<const Encoder> plain() {
+  return std::make_shared<const Encoder>(EncodingRules(), nullptr);
+}
+
+TEST(OwnOutput, LeavesOutWhatOtherNodesOfThePackageSayOfThemselves) {
+  OwnOutput own("/watch", {{"/base", "/rosout"}}, plain());
+  Graph graph;
+  graph.topics["/second/status"] = {"self_awareness/SelfAwareness", {"/second", "/base"}, {}};
+  graph.topics["/scan"] = {"sensor_msgs/LaserScan", {"/player"}, {}};
+  EXPECT_FALSE(own.covers("/second", "/rosout"));
+  EXPECT_TRUE(own.mayCover("/second", "/rosout"));
+  EXPECT_FALSE(own.mayCover("/second", "/scan"));
+  EXPECT_FALSE(own.mayCover("/base", "/rosout")) << "the model knows it";
+  EXPECT_TRUE(own.setGraph(graph));
+  EXPECT_FALSE(own.setGraph(graph));
+  EXPECT_TRUE(own.covers("/second", "/rosout"));
+  EXPECT_TRUE(own.covers("/second", "/diagnostics"));
+  EXPECT_FALSE(own.covers("/second", "/scan"));
+  EXPECT_FALSE(own.covers("/player", "/rosout"));
+  EXPECT_FALSE(own.covers("/base", "/rosout")) << "the model knows it";
+  EXPECT_TRUE(own.covers("/base", "/diagnostics"));
+}
+
+TEST(NamedOnce, NamesEachOnceAndNotTooMany) {
+  NamedOnce named;
+  EXPECT_TRUE(named.add("/a"));
+  EXPECT_FALSE(named.add("/a"));
+  std::size_t count = 1;
+  for (int i = 0; i < 1000; ++i) {
+    count += named.add("/b" + std::to_string(i)) ? 1 : 0;
+  }
+  EXPECT_EQ(count, NamedOnce::kMost);
+}
+
+TEST(OwnOutput, IsWhatTheModelDoesNotKnowFromTheProcess) {
+  const OwnOutput own("/manager", {{"/manager", "/scan"}, {"/manager", "/rosout"}}, plain());
+  EXPECT_TRUE(own.covers("/manager", "/watch/status"));
+  EXPECT_TRUE(own.covers("/manager", "/rosout"));
+  EXPECT_FALSE(own.covers("/manager", "/scan"));
+  EXPECT_FALSE(own.covers("/player", "/watch/status"));
+}
+
+class NothingHeardTest : public testing::Test {
+ protected:
+  static EncodingRules defaults() {
+    EncodingRules rules;
+    rules.exclude_sources = {"/play"};
+    return rules;
+  }
+
+  Graph graph_;
+  const Encoder encoder_{defaults(), [](const core::EventType&) { return core::EventId{0}; }};
+};
+
+TEST_F(NothingHeardTest, ARobotThatIsOff) {
+  graph_.topics["/rosout"] = {"rosgraph_msgs/Log", {"/rosout_agg"}, {}};
+  graph_.topics["/monitor/status"] = {"self_awareness/SelfAwareness", {"/monitor"}, {}};
+  graph_.topics["/diagnostics"] = {"diagnostic_msgs/DiagnosticArray", {"/monitor"}, {}};
+  EXPECT_EQ(whyNothingIsHeard(graph_, encoder_, false), "no node of a robot publishes anything");
+}
+
+TEST_F(NothingHeardTest, APlayerIsNamedWithTheWayOut) {
+  graph_.topics["/scan"] = {"sensor_msgs/LaserScan", {"/play_1764000000000000000"}, {"/slam"}};
+  graph_.topics["/odom"] = {"nav_msgs/Odometry", {"/play_1764000000000000000"}, {"/slam"}};
+  EXPECT_EQ(whyNothingIsHeard(graph_, encoder_, false),
+            "/play_1764000000000000000 plays 2 topics; players are left out: use `score BAG` or "
+            "`train BAG`, or `source: none` in the encoding");
+}
+
+TEST_F(NothingHeardTest, APublisherThatIsNotHeard) {
+  graph_.topics["/scan"] = {"sensor_msgs/LaserScan", {"/lidar"}, {}};
+  EXPECT_EQ(whyNothingIsHeard(graph_, encoder_, false), "nothing is sent on /scan");
+  EXPECT_EQ(whyNothingIsHeard(graph_, encoder_, true),
+            "no node of the robot subscribes to /scan; launch it with subscribe:=all to listen "
+            "all the same");
 }
 
 }  // namespace

@@ -7,6 +7,9 @@
 #include <std_msgs/String.h>
 
 #include <boost/filesystem.hpp>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <utility>
@@ -14,6 +17,7 @@
 
 #include "model_file_case.h"
 #include "ros/model/model_fields.h"
+#include "self_awareness/core/evidence/channel/track.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -134,6 +138,158 @@ TEST_F(ModelFileTest, NoMoreIsReadThanIsAskedFor) {
   const TrainedModel delays = loadModel(path("m"), ModelCounts::kDelays);
   EXPECT_TRUE(delays.statistics == model.statistics);
   EXPECT_EQ(delays.evidence[0].size(), 0U);
+}
+
+TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
+  TrainedModel model = calibratedModel();
+  model.graph.connect("/a", "/x", "/b");
+  model.graph.connect("/a", "/y", "/c");
+  model.graph.place("/a", "base");
+  model.graph.addUnheard({"/planner", "/debug"});
+  model.graph.addLasting({"/b", "/x"}, 3);
+  model.tuning.least_effect = 0.003;
+  model.tuning.changing_time = 3;  // the first and the last one are no exceptions
+  model.tuning.fewest_gaps = 31;
+  model.tuning.without = {"slower", "pairs"};
+  ASSERT_GE(model.calibration->limits.tracks.size(), 3U);
+  saveModel(model, path("m"));
+  const TrainedModel loaded = loadModel(path("m"));
+  EXPECT_TRUE(loaded.evidence == model.evidence);
+  EXPECT_TRUE(loaded.watched.halves == model.watched.halves);
+  ASSERT_EQ(loaded.watched.tracks.size(), model.watched.tracks.size());
+  for (std::size_t track = 0; track < loaded.watched.tracks.size(); ++track) {
+    EXPECT_EQ(loaded.watched.tracks[track].channel, model.watched.tracks[track].channel);
+    EXPECT_EQ(loaded.watched.tracks[track].to, model.watched.tracks[track].to);
+    EXPECT_EQ(loaded.watched.tracks[track].from, model.watched.tracks[track].from);
+  }
+  EXPECT_TRUE(loaded.tuning == model.tuning);
+  EXPECT_TRUE(loaded.watched.tuning == model.tuning);
+  EXPECT_EQ(loaded.graph.edges().size(), 2U);
+  EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
+  EXPECT_EQ(loaded.graph.hostOf("/a"), "base");
+  EXPECT_EQ(loaded.unheard(), (std::set<core::SourceGraph::Publication>{{"/planner", "/debug"}}));
+  EXPECT_EQ(loaded.graph.lasting(), model.graph.lasting());
+  const core::evidence::Limits limits = loaded.limits().value();
+  ASSERT_EQ(limits.tracks.size(), model.calibration->limits.tracks.size());
+  EXPECT_TRUE(std::isnan(limits.tracks[0]));
+  EXPECT_EQ(limits.tracks[1], 2.5);
+  EXPECT_EQ(loaded.calibration->method, "held-out");
+  EXPECT_EQ(loaded.calibration->budget, 0.25);
+  EXPECT_EQ(loaded.calibration->windows, 1234U);
+  EXPECT_EQ(loaded.calibration->recordings.at(0).bag, "normal.bag");
+}
+
+TEST_F(ModelFileTest, PairsThatWereLeftOutForGoodComeBackAsSuch) {
+  TrainedModel model = calibratedModel();
+  core::evidence::PairSet pairs;
+  pairs.add(1, 0);
+  for (core::evidence::Statistics& half : model.evidence) {
+    half = half.without(pairs);
+  }
+  saveModel(model, path("m"));
+  for (const TrainedModel& loaded : {loadModel(path("m")), fromBytes(toBytes(model))}) {
+    EXPECT_TRUE(loaded.evidence == model.evidence);
+    EXPECT_TRUE(loaded.evidence[0].leftOut() == pairs);
+    EXPECT_EQ(loaded.evidence[1].delaysToAny(), model.watched.halves[1].delaysToAny());
+  }
+}
+
+TEST_F(ModelFileTest, WhatTheTrainingShowedComesBackAsItWasSaved) {
+  const TrainedModel model = calibratedModel();
+  saveModel(model, path("m"));
+  for (const TrainedModel& loaded :
+       {loadModel(path("m")), loadModel(path("m"), ModelCounts::kWatched),
+        fromBytes(toBytes(model))}) {
+    ASSERT_EQ(loaded.findings.size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const core::evidence::LimitFinder::Recording& saved = model.findings[k];
+      const core::evidence::LimitFinder::Recording& found = loaded.findings[k];
+      EXPECT_EQ(found.start, saved.start);
+      EXPECT_EQ(found.end, saved.end);
+      EXPECT_TRUE(found.trained_on);
+      EXPECT_EQ(found.windows, saved.windows);
+      EXPECT_EQ(found.said, saved.said);
+      ASSERT_EQ(found.parts.size(), saved.parts.size());
+      for (std::size_t part = 0; part < saved.parts.size(); ++part) {
+        EXPECT_EQ(found.parts[part].windows, saved.parts[part].windows);
+        EXPECT_EQ(found.parts[part].evidence, saved.parts[part].evidence);
+        EXPECT_EQ(found.parts[part].longest_gaps, saved.parts[part].longest_gaps);
+      }
+    }
+    EXPECT_TRUE(loaded.watched.halves == model.watched.halves);
+  }
+}
+
+TEST_F(ModelFileTest, WhatSpeaksForRelationsComesBackAsItWasSaved) {
+  const TrainedModel model = calibratedModel();
+  saveModel(model, path("m"));
+  const TrainedModel loaded = loadModel(path("m"));
+  EXPECT_EQ(loaded.calibration->false_alarms_per_hour, 0.125);
+  const std::vector<core::evidence::Relation>& relations = loaded.calibration->relations;
+  ASSERT_EQ(relations.size(), model.watched.tracks.size());
+  for (std::size_t track = 0; track < relations.size(); ++track) {
+    const core::evidence::Relation& relation = relations[track];
+    EXPECT_EQ(relation.watched, track == 1);
+    EXPECT_EQ(relation.reaches, track == 1);
+    EXPECT_EQ(relation.irregular, track == 1);
+    EXPECT_EQ(relation.spread, 0.25);
+    EXPECT_EQ(relation.starts, 2U);
+    EXPECT_EQ(relation.starts_needed, 3U);
+  }
+}
+
+TEST_F(ModelFileTest, DamagedPairsAreRefused) {
+  // Of one other type: its id, answers, first bin and counts; what was left out, and of which
+  // pairs.
+  using Counts = std::vector<std::uint32_t>;
+  const auto error = [this](core::EventId other, std::size_t first, const Counts& counts,
+                            const std::vector<std::uint8_t>& pairs = {}) {
+    return damagedPart("/evidence/first", [&](std::vector<std::uint8_t>& bytes) {
+      ByteWriter written;
+      written(std::size_t{1}, other, std::uint64_t{0}, first, counts, false, pairs);
+      bytes = written.take();
+    });
+  };
+  const std::string file = path("damaged") + ": a damaged model file: ";
+  EXPECT_EQ(error(1, 49, {7}), "");
+  EXPECT_EQ(error(1, 49, {1, 1}), file + "its evidence has an impossible bin");
+  EXPECT_EQ(error(0, 0, {1000}), file + "its evidence has more delays than gaps");
+  EXPECT_NE(error(2, 0, {1}), "") << "there is no such type";
+  EXPECT_NE(error(1, 0, {1}, {4}), "") << "nor this one";
+  EXPECT_NE(error(1, 0, {1}, {2}), "") << "it has counts of this pair";
+}
+
+TEST_F(ModelFileTest, WhatThisVersionDoesNotKnowIsNotWatchedAndAllElseIs) {
+  const TrainedModel whole = calibratedModel();
+  std::string name = channelName(whole.watched.tracks.at(1));
+  name.insert(name.begin(), static_cast<char>(name.size()));
+  std::string unknown = name;
+  unknown.back() = '?';
+  ASSERT_EQ(channelName(whole.watched.tracks.at(0)), channelName(whole.watched.tracks.at(1)));
+  ASSERT_EQ(damagedPart("/model", rename(name, unknown)), "");
+  const TrainedModel model = loadModel(path("damaged"));
+  EXPECT_EQ(model.left_out, (std::set<std::string>{unknown.substr(1)}));
+  ASSERT_EQ(model.watched.tracks.size() + 1, whole.watched.tracks.size());
+  EXPECT_EQ(model.limits()->tracks,
+            std::vector<double>(model.watched.tracks.size(), 2.5));  // the first one had none
+  EXPECT_EQ(model.calibration->relations.size(), model.watched.tracks.size());
+  EXPECT_TRUE(model.calibration->relations.at(0).watched) << "that of the second one";
+  for (std::size_t k = 0; k < model.findings.size(); ++k) {
+    const core::evidence::LimitFinder::Recording& all = whole.findings[k];
+    const core::evidence::LimitFinder::Recording& left = model.findings[k];
+    EXPECT_EQ(left.said,
+              (std::vector<core::evidence::Said>(all.said.begin() + 1, all.said.end())));
+    for (std::size_t part = 0; part < all.parts.size(); ++part) {
+      EXPECT_EQ(left.parts[part].evidence[1], all.parts[part].evidence[2]);
+    }
+  }
+  saveModel(model, path("again"));
+  EXPECT_EQ(loadModel(path("again")).watched.tracks.size(), model.watched.tracks.size());
+}
+
+TEST_F(ModelFileTest, OfATuningWhatIsMissingHasItsDefaultAndWhatIsUnknownIsLeftOut) {
+  ASSERT_EQ(damagedPart("/model", rename("fewest_gaps", "fewest_gape")), "");
+  EXPECT_TRUE(loadModel(path("damaged")).tuning == core::evidence::Tuning());
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "../../problem.h"
 #include "core/paper/delay_trainer.h"
 #include "self_awareness/core/evidence/count/trainer.h"
-#include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::ros1 {
 namespace {

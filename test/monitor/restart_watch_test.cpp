@@ -1,3 +1,5 @@
+#include "monitor/restart_watch.h"
+
 #include <gtest/gtest.h>
 
 #include <map>
@@ -5,7 +7,6 @@
 #include <vector>
 
 #include "../times.h"
-#include "monitor/restart_watch.h"
 #include "self_awareness/ros/encoding.h"
 
 namespace self_awareness {

@@ -1,3 +1,5 @@
+#include "ros/live/slave_api.h"
+
 #include <gtest/gtest.h>
 
 #include <boost/asio/io_context.hpp>
@@ -6,8 +8,6 @@
 #include <chrono>
 #include <string>
 #include <thread>
-
-#include "ros/live/slave_api.h"
 
 namespace self_awareness::ros1 {
 namespace {
