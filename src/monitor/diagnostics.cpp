@@ -1,7 +1,5 @@
 #include "diagnostics.h"
 
-#include <utility>
-
 #include "node/node_status.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/ros_time.h"
@@ -14,7 +12,34 @@ using ros1::number;
 
 namespace {
 
-/// All lists as they are told where nothing is left out.
+using Status = diagnostic_updater::DiagnosticStatusWrapper;
+
+void tellKeptLogs(const KeptLogs::Report& report, Status& status) {
+  if (!report.files.error.empty()) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "logs of normal operation cannot be kept: " + report.files.error);
+  }
+  status.add("logs kept to learn from", report.files.written);
+  status.add("logs left out as not normal", report.left_out);
+  if (!report.why.empty()) {
+    status.add("why the last one was", report.why);
+  }
+}
+
+void tellRecorder(const FlightRecorder::Report& report, Status& status) {
+  if (!report.files.error.empty()) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "the flight recorder cannot write: " + report.files.error);
+  }
+  status.add("recorded [s]", number(report.seconds));
+  status.add("memory of the recorder [MB]", number(static_cast<double>(report.bytes) * 1e-6));
+  status.add("files of the recorder", report.files.written);
+  status.add("files given up", report.files.given_up);
+  status.add("last file", report.files.last_written);
+}
+
+}  // namespace
+
 std::string allLists(const MonitorState& state) {
   std::string lists = ros1::listed(state.mutes) + '\n' + ros1::listed(inWords(state.unheard));
   for (const auto& [key, list] : ros1::listsOf(state.communication)) {
@@ -23,42 +48,7 @@ std::string allLists(const MonitorState& state) {
   return lists;
 }
 
-}  // namespace
-
-Diagnostics::Diagnostics(ros::NodeHandle node_handle, const std::string& name,
-                         const std::string& hardware_id, bool component_statuses,
-                         std::size_t bytes_per_second)
-    : name_(name),
-      hardware_id_(hardware_id),
-      component_statuses_(component_statuses),
-      round_(bytes_per_second),
-      published_at_(ros1::steadyNow()),
-      publisher_(node_handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)) {}
-
-void Diagnostics::publish(MonitorState state) {
-  const std::int64_t now = ros1::steadyNow();
-  const double elapsed = core::toSeconds(now - std::exchange(published_at_, now));
-  state.communication.lists = lists_.next(allLists(state), elapsed);
-  ros1::DiagnosticStatuses statuses(name_, hardware_id_, state.ros_now);
-  Status communication;
-  ros1::tellCommunication(state.communication, communication);
-  if (state.communication.started && clockStands(state.clock_stands_still_for)) {
-    communication.mergeSummary(DiagnosticStatus::WARN,
-                               "not judged any more: ROS time stands still");
-  }
-  statuses.add("communication", communication);
-  Status monitor;
-  tellMonitor(state, monitor);
-  statuses.add("monitor", monitor);
-  if (component_statuses_) {
-    ros1::DiagnosticStatuses of_components(name_, hardware_id_, state.ros_now);
-    ros1::addComponents(state.communication, of_components);
-    ros1::addChosen(of_components, round_, elapsed, statuses);
-  }
-  publisher_.publish(statuses.message());
-}
-
-void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
+void tellMonitor(const MonitorState& state, Status& status) {
   const ros1::HeardReport& heard = state.communication.heard;
   status.summary(DiagnosticStatus::OK, "listening");
   if (!state.master_answers) {
@@ -115,30 +105,6 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   if (state.kept_logs) {
     tellKeptLogs(*state.kept_logs, status);
   }
-}
-
-void Diagnostics::tellKeptLogs(const KeptLogs::Report& report, Status& status) {
-  if (!report.files.error.empty()) {
-    status.mergeSummary(DiagnosticStatus::WARN,
-                        "logs of normal operation cannot be kept: " + report.files.error);
-  }
-  status.add("logs kept to learn from", report.files.written);
-  status.add("logs left out as not normal", report.left_out);
-  if (!report.why.empty()) {
-    status.add("why the last one was", report.why);
-  }
-}
-
-void Diagnostics::tellRecorder(const FlightRecorder::Report& report, Status& status) {
-  if (!report.files.error.empty()) {
-    status.mergeSummary(DiagnosticStatus::WARN,
-                        "the flight recorder cannot write: " + report.files.error);
-  }
-  status.add("recorded [s]", number(report.seconds));
-  status.add("memory of the recorder [MB]", number(static_cast<double>(report.bytes) * 1e-6));
-  status.add("files of the recorder", report.files.written);
-  status.add("files given up", report.files.given_up);
-  status.add("last file", report.files.last_written);
 }
 
 }  // namespace self_awareness

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
-#include <ros/node_handle.h>
-#include <ros/publisher.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -39,34 +37,10 @@ struct MonitorState {
   std::optional<KeptLogs::Report> kept_logs;       ///< none: nothing is kept to learn from
 };
 
-/// Publishes on /diagnostics (REP-107: OK, WARN, ERROR; never STALE): one status for the whole,
-/// one for every component, one for the monitor itself.
-class Diagnostics {
- public:
-  /// @param name of the monitor, which the statuses' names begin with
-  /// @param component_statuses whether every component has a status of its own
-  /// @param bytes_per_second of all statuses: beyond it, components that do not change are said
-  /// one after the other
-  Diagnostics(ros::NodeHandle node_handle, const std::string& name, const std::string& hardware_id,
-              bool component_statuses, std::size_t bytes_per_second);
+/// All lists as they are told where nothing is left out.
+std::string allLists(const MonitorState& state);
 
-  /// Publishes the state now. @param state which lists are told is decided here
-  void publish(MonitorState state);
-
- private:
-  using Status = diagnostic_updater::DiagnosticStatusWrapper;
-
-  static void tellMonitor(const MonitorState& state, Status& status);
-  static void tellRecorder(const FlightRecorder::Report& report, Status& status);
-  static void tellKeptLogs(const KeptLogs::Report& report, Status& status);
-
-  std::string name_;
-  std::string hardware_id_;
-  bool component_statuses_;
-  ros1::StatusRound round_;
-  ros1::ListRound lists_;
-  std::int64_t published_at_;  // [ns of steady time]
-  ros::Publisher publisher_;
-};
+/// Tells how the monitor itself is.
+void tellMonitor(const MonitorState& state, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 }  // namespace self_awareness

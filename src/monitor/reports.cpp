@@ -8,10 +8,10 @@
 #include "node/live_source.h"
 #include "node/node_status.h"
 #include "parameters.h"
-#include "ros/nothing_heard.h"
 #include "ros/text.h"
 #include "ros/verdict/components.h"
 #include "self_awareness/Components.h"
+#include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/ros_time.h"
 #include "session.h"
 
@@ -26,11 +26,14 @@ constexpr std::int64_t kNothingHeard = 10 * core::kNanosecondsPerSecond;
 Reports::Reports(Host& host, ros::NodeHandle& node_handle, ros::NodeHandle& private_node_handle,
                  const std::string& name)
     : host_(host),
-      diagnostics_(node_handle, name, host.parameters().hardware_id,
-                   host.parameters().source_diagnostics, host.parameters().diagnostic_bytes),
+      name_(name),
+      round_(host.parameters().diagnostic_bytes),
+      diagnostics_publisher_(
+          node_handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)),
       components_publisher_(
           private_node_handle.advertise<self_awareness::Components>("components", 1, true)),
-      heard_(momentNow()) {}
+      heard_(momentNow()),
+      published_at_(ros1::steadyNow()) {}
 
 ros1::HeardTally::Moment Reports::momentNow() {
   timespec cpu{};
@@ -81,7 +84,30 @@ void Reports::publish(const std::vector<Part*>& parts) {
     components.mutes = state.mutes;
     components_publisher_.publish(components);
   }
-  diagnostics_.publish(std::move(state));
+  publishDiagnostics(state);
+}
+
+void Reports::publishDiagnostics(MonitorState& state) {
+  const double elapsed = core::toSeconds(now_.steady - std::exchange(published_at_, now_.steady));
+  state.communication.lists = lists_.next(allLists(state), elapsed);
+  const std::string& hardware_id = host_.parameters().hardware_id;
+  ros1::DiagnosticStatuses statuses(name_, hardware_id, state.ros_now);
+  diagnostic_updater::DiagnosticStatusWrapper communication;
+  ros1::tellCommunication(state.communication, communication);
+  if (state.communication.started && clockStands(state.clock_stands_still_for)) {
+    communication.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
+                               "not judged any more: ROS time stands still");
+  }
+  statuses.add("communication", communication);
+  diagnostic_updater::DiagnosticStatusWrapper monitor;
+  tellMonitor(state, monitor);
+  statuses.add("monitor", monitor);
+  if (host_.parameters().source_diagnostics) {
+    ros1::DiagnosticStatuses of_components(name_, hardware_id, state.ros_now);
+    ros1::addComponents(state.communication, of_components);
+    ros1::addChosen(of_components, round_, elapsed, statuses);
+  }
+  diagnostics_publisher_.publish(statuses.message());
 }
 
 void Reports::onReport(MonitorState& state) {

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "bindings.h"
-#include "ros/nothing_heard.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/graph.h"

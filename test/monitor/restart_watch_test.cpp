@@ -2,12 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
-#include <string>
-#include <vector>
-
 #include "../times.h"
-#include "self_awareness/ros/encoding.h"
 
 namespace self_awareness {
 namespace {

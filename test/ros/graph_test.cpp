@@ -7,7 +7,6 @@
 #include <set>
 #include <string>
 
-#include "ros/nothing_heard.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/named_once.h"
 #include "self_awareness/ros/own_output.h"

@@ -109,4 +109,9 @@ std::set<std::string> chooseTopics(const Graph& graph, SubscribePolicy policy,
                                    const std::function<bool(const std::string&)>& included,
                                    const std::function<bool(const std::string&)>& listens);
 
+/// Why nothing of a robot is heard, in words.
+/// @param graph who publishes and who subscribes
+/// @param used_only whether only what a node of the robot subscribes to is listened to
+std::string whyNothingIsHeard(const Graph& graph, const Encoder& encoder, bool used_only);
+
 }  // namespace self_awareness::ros1

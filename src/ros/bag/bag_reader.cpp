@@ -156,22 +156,22 @@ BagReader::~BagReader() = default;
 void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
                      const Progress& progress, const SenderWatch::Handler& senders) const {
   const StampRange stamps(summary_, range);
-  std::vector<std::optional<ConnectionEncoder>> encoders;
-  encoders.reserve(files_->index().connections.size());
-  std::vector<AttributeReader> attributes;
-  attributes.reserve(files_->index().connections.size());
+  struct Heard {
+    std::optional<ConnectionEncoder> encoder;  // none: left out
+    AttributeReader attributes;
+    std::shared_ptr<SenderWatch::Link> link;  // none: nothing is to be learned of it
+  };
+  std::vector<Heard> all;  // by connection
   std::optional<SenderWatch> watch;
   if (senders) {
     watch.emplace(senders);
   }
-  std::vector<std::shared_ptr<SenderWatch::Link>> links;
   const Siblings siblings = encoder.tellsSources() ? siblingsIn(files_->index()) : Siblings();
   for (const Connection& connection : files_->index().connections) {
-    encoders.push_back(siblings.cover(connection.callerid, connection.topic)
-                           ? std::nullopt
-                           : encoder.connect(connection));
-    attributes.emplace_back(connection);
-    links.push_back(watch ? watch->connect(connection, encoder) : nullptr);
+    all.push_back(
+        {siblings.cover(connection.callerid, connection.topic) ? std::nullopt
+                                                               : encoder.connect(connection),
+         AttributeReader(connection), watch ? watch->connect(connection, encoder) : nullptr});
   }
   std::vector<std::uint8_t> content;
   std::vector<core::EventId> latched;  // what lasts when the range begins
@@ -182,8 +182,7 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
         progress(done, summary_.messages);
       }
       ++done;
-      std::optional<ConnectionEncoder>& connection_encoder = encoders[entry.connection];
-      const std::shared_ptr<SenderWatch::Link>& link = links[entry.connection];
+      auto& [connection_encoder, reader, link] = all[entry.connection];
       if (!connection_encoder) {
         if (link && stamps.holds(entry.stamp)) {
           watch->add(entry.stamp, *link, std::nullopt);
@@ -201,7 +200,6 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
         handler({entry.stamp, id, {}});
       }
       const BagIndexEntry stored = asStored(entry, summary_.set_back);
-      AttributeReader& reader = attributes[entry.connection];
       const bool tells_mode = connection_encoder->tellsMode();
       const bool needs_content = tells_mode || (accepted && connection_encoder->needsContent());
       if (needs_content) {
