@@ -1,4 +1,4 @@
-"""What a learner says that hears nothing; test/ros/nothing_heard_test.cpp has more of it."""
+"""What a learner says that hears nothing; test/ros/graph_test.cpp has more of it."""
 from __future__ import annotations
 
 from typing import Dict, List
