@@ -17,21 +17,12 @@ namespace {
 const std::string kLog = "rosgraph_msgs/Log[";
 const std::string kDiagnostics = "diagnostic_msgs/DiagnosticArray[lists status.level";
 
+const std::map<int, std::string> kLevels{
+    {1, "DEBUG"}, {2, "INFO"}, {4, "WARN"}, {8, "ERROR"}, {16, "FATAL"}};
+
 std::string nameOf(std::uint8_t level) {
-  switch (level) {
-    case 1:
-      return "DEBUG";
-    case 2:
-      return "INFO";
-    case 4:
-      return "WARN";
-    case 8:
-      return "ERROR";
-    case 16:
-      return "FATAL";
-    default:
-      return "level " + std::to_string(level);
-  }
+  const auto known = kLevels.find(level);
+  return known == kLevels.end() ? "level " + std::to_string(level) : known->second;
 }
 
 std::string quoted(const std::string& text) {

@@ -14,10 +14,7 @@ constexpr char kUsage[] =
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (self_awareness::answered(argc, argv, kUsage)) {
-    return 0;
-  }
-  return self_awareness::runNode(argc, argv, "self_awareness", [] {
+  return self_awareness::runNode(argc, argv, "self_awareness", kUsage, [] {
     return std::make_unique<self_awareness::Monitor>(ros::NodeHandle(), ros::NodeHandle("~"),
                                                      ros::this_node::getName());
   });

@@ -124,8 +124,17 @@ void run(const std::function<std::unique_ptr<NodeProgram>()>& make) {
 
 }  // namespace
 
-int runNode(int argc, char** argv, const std::string& name,
+int runNode(int argc, char** argv, const std::string& name, const std::string& usage,
             const std::function<std::unique_ptr<NodeProgram>()>& make) {
+  const std::string_view asked = argc > 1 ? argv[1] : "";
+  if (asked == "--version") {
+    std::printf("self_awareness %s\n", ros1::kPackageVersion);
+    return 0;
+  }
+  if (asked == "--help" || asked == "-h") {
+    std::printf("%s\n", usage.c_str());
+    return 0;
+  }
   Leaving this_leaving;
   leaving = &this_leaving;
   ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
@@ -147,18 +156,6 @@ int runNode(int argc, char** argv, const std::string& name,
 
 void endNode() {
   leaving->change([](Life& life) { life.stopping = true; });
-}
-
-bool answered(int argc, char** argv, const std::string& usage) {
-  const std::string_view asked = argc > 1 ? argv[1] : "";
-  if (asked == "--version") {
-    std::printf("self_awareness %s\n", ros1::kPackageVersion);
-  } else if (asked == "--help" || asked == "-h") {
-    std::printf("%s\n", usage.c_str());
-  } else {
-    return false;
-  }
-  return true;
 }
 
 }  // namespace self_awareness

@@ -16,17 +16,13 @@ class NodeProgram {
 
 /// Runs a node: makes what it consists of once the master has answered, and lets it live until
 /// SIGINT, SIGTERM or endNode() ends it. It is finished first; then it has 2 s to say goodbye to
-/// the master, which may hang.
+/// the master, which may hang. --help and --version are answered at once, without a master.
+/// @param usage what --help prints
 /// @return exit code: 1 if `make` throws, else 0
-int runNode(int argc, char** argv, const std::string& name,
+int runNode(int argc, char** argv, const std::string& name, const std::string& usage,
             const std::function<std::unique_ptr<NodeProgram>()>& make);
 
 /// Ends the node soon. May be called in any thread.
 void endNode();
-
-/// Answers --help and --version of a node, at once and without a master.
-/// @param usage what --help prints
-/// @return whether the arguments asked for one of them
-bool answered(int argc, char** argv, const std::string& usage);
 
 }  // namespace self_awareness

@@ -13,10 +13,7 @@ constexpr char kUsage[] =
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (self_awareness::answered(argc, argv, kUsage)) {
-    return 0;
-  }
-  return self_awareness::runNode(argc, argv, "recorder", [] {
+  return self_awareness::runNode(argc, argv, "recorder", kUsage, [] {
     return std::make_unique<self_awareness::EventRecorder>(ros::NodeHandle(), ros::NodeHandle("~"),
                                                            self_awareness::endNode);
   });

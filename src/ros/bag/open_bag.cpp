@@ -9,6 +9,7 @@
 #include <new>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "bag_records.h"
@@ -17,32 +18,23 @@
 namespace self_awareness::ros1 {
 namespace {
 
-/// How a file of another format begins, and what to do with it.
-struct Foreign {
-  std::string magic;
-  std::string what;
-};
-
-const std::vector<Foreign>& foreignFormats() {
-  static const std::vector<Foreign> kFormats{
-      {{"SQLite format 3\0", 16},
-       "a recording of ROS 2 (SQLite); rosbags-convert (pip install rosbags) makes a bag of it, "
-       "but "
-       "it does not say who sent what"},
-      {"#ROSBAG V",
-       "of the format before 2010; write it anew with: rosbag filter OLD.bag NEW.bag True"},
-      {"\x1f\x8b", "compressed by gzip; unpack it first (gunzip)"},
-      {"BZh", "compressed by bzip2; unpack it first (bunzip2)"},
-      {{"\xfd"
-        "7zXZ\0",
-        6},
-       "compressed by xz; unpack it first (unxz)"},
-      {"\x28\xb5\x2f\xfd", "compressed by zstd; unpack it first (unzstd)"},
-      {"\x04\x22\x4d\x18", "compressed by lz4; unpack it first (unlz4)"},
-      {"7z\xbc\xaf\x27\x1c", "a 7z archive; unpack it first (7z x)"},
-      {"PK\x03\x04", "a zip archive; unpack it first (unzip)"}};
-  return kFormats;
-}
+/// How files of other formats begin, and what to do with them.
+const std::vector<std::pair<std::string, std::string>> kForeign{
+    {{"SQLite format 3\0", 16},
+     "a recording of ROS 2 (SQLite); rosbags-convert (pip install rosbags) makes a bag of it, "
+     "but it does not say who sent what"},
+    {"#ROSBAG V",
+     "of the format before 2010; write it anew with: rosbag filter OLD.bag NEW.bag True"},
+    {"\x1f\x8b", "compressed by gzip; unpack it first (gunzip)"},
+    {"BZh", "compressed by bzip2; unpack it first (bunzip2)"},
+    {{"\xfd"
+      "7zXZ\0",
+      6},
+     "compressed by xz; unpack it first (unxz)"},
+    {"\x28\xb5\x2f\xfd", "compressed by zstd; unpack it first (unzstd)"},
+    {"\x04\x22\x4d\x18", "compressed by lz4; unpack it first (unlz4)"},
+    {"7z\xbc\xaf\x27\x1c", "a 7z archive; unpack it first (7z x)"},
+    {"PK\x03\x04", "a zip archive; unpack it first (unzip)"}};
 
 bool startsWith(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
@@ -65,9 +57,9 @@ std::string whyNoBag(const std::string& start) {
                : "MCAP; make a bag of it with mcap_to_bag.py (pip install mcap), which is in the "
                  "folder examples of this package";
   }
-  for (const Foreign& format : foreignFormats()) {
-    if (startsWith(start, format.magic)) {
-      return format.what;
+  for (const auto& [magic, what] : kForeign) {
+    if (startsWith(start, magic)) {
+      return what;
     }
   }
   return "of no format that is known here";
