@@ -32,95 +32,68 @@ std::optional<std::size_t> placeOfHeader(const std::string& definition,
   return std::nullopt;
 }
 
+template <typename Head>
+std::uint32_t numberAt(std::size_t place, const Head& head) {
+  std::uint32_t number = 0;  // little-endian, as the machines that ROS runs on
+  std::memcpy(&number, head.data() + place, sizeof number);
+  return number;
+}
+
 }  // namespace
 
 AttributeReader::AttributeReader(const Connection& connection)
     : place_(placeOfHeader(connection.definition, connection.datatype)),
-      header_end_(place_ ? *place_ + kHeader : 0),
       is_read_(connection.datatype != "rosgraph_msgs/Log"),
       is_numbered_(!connection.latching) {}
 
-void AttributeReader::begin(std::uint64_t size) {
-  size_ = size;
-  position_ = 0;
-  content_ = 0;
-  header_.fill(0);
-  sample_.clear();
-}
-
-void AttributeReader::add(const std::uint8_t* data, std::size_t size) {
-  if (!is_read_) {
-    return;
-  }
-  if (position_ < header_end_) {
-    const std::uint64_t of_header = std::min<std::uint64_t>(header_end_ - position_, size);
-    std::copy_n(data, of_header, header_.begin() + static_cast<std::ptrdiff_t>(position_));
-    if (isFirst()) {
-      position_ += of_header;
-      data += of_header;
-      size -= of_header;
-      if (position_ == kHeader) {
-        content_ = std::min(kHeader + std::uint64_t{numberAt(kHeader - 4)}, size_);
-      }
-    }
-  }
-  sample(data, size);
-}
-
-template <typename Function>
-void AttributeReader::forEachSample(Function function) const {
-  const std::uint64_t content = size_ - content_;
-  if (content <= kBlocks * kBlock) {
-    function(content_, size_);
-    return;
-  }
-  for (std::uint64_t block = 0; block < kBlocks; ++block) {
-    const std::uint64_t from = content_ + block * (content - kBlock) / (kBlocks - 1);
-    function(from, from + kBlock);
-  }
-}
-
-AttributeReader::Part AttributeReader::next() const {
-  if (!is_read_) {
-    return {size_, size_};
-  }
-  if (position_ < header_end_) {
-    return {position_, std::min<std::uint64_t>(header_end_, size_)};
-  }
-  Part part{size_, size_};
-  forEachSample([&](std::uint64_t from, std::uint64_t to) {
-    if (position_ < to && from < part.begin) {
-      part = {std::max(from, position_), to};
-    }
-  });
-  return part;
-}
-
-void AttributeReader::sample(const std::uint8_t* data, std::uint64_t size) {
-  forEachSample([&](std::uint64_t from, std::uint64_t to) {
-    const std::uint64_t first = std::max(from, position_);
-    const std::uint64_t last = std::min(to, position_ + size);
-    if (first < last) {
-      sample_.insert(sample_.end(), data + (first - position_), data + (last - position_));
-    }
-  });
-  position_ += size;
-}
-
-core::Attributes AttributeReader::end(std::int64_t now) {
+core::Attributes AttributeReader::read(std::uint64_t size, const Bytes& bytes, std::int64_t now) {
   core::Attributes attributes;
   if (!is_read_) {
     return attributes;
   }
-  attributes.size = core::sizeClass(size_);
-  const std::uint64_t content = size_ - content_;
-  attributes.same = last_same_ = last_content_ == content && sample_ == last_sample_;
-  last_content_ = content;
+  Head head{};
+  const bool has_header = place_ && size >= *place_ + kHeader;
+  if (has_header) {
+    const std::string_view read = bytes(0, *place_ + kHeader);
+    std::copy(read.begin(), read.end(), head.begin());
+  }
+  const std::uint64_t begin =
+      has_header && isFirst()
+          ? std::min(kHeader + std::uint64_t{numberAt(kHeader - 4, head)}, size)
+          : 0;
+  sample(begin, size, bytes);
+  attributes.size = core::sizeClass(size);
+  attributes.same = last_same_ = last_content_ == size - begin && sample_ == last_sample_;
+  last_content_ = size - begin;
   sample_.swap(last_sample_);
-  if (place_ && position_ >= header_end_ && (isFirst() || numberAt(0) > 0)) {
-    readHeader(now, attributes);
+  if (has_header && (isFirst() || numberAt(0, head) > 0)) {
+    readHeader(head, now, attributes);
   }
   return attributes;
+}
+
+core::Attributes AttributeReader::read(const std::vector<std::uint8_t>& content,
+                                       std::int64_t now) {
+  const auto* const data = reinterpret_cast<const char*>(content.data());
+  return read(
+      content.size(),
+      [data](std::uint64_t from, std::uint64_t to) {
+        return std::string_view(data + from, to - from);
+      },
+      now);
+}
+
+void AttributeReader::sample(std::uint64_t begin, std::uint64_t size, const Bytes& bytes) {
+  const std::uint64_t content = size - begin;
+  if (content <= kBlocks * kBlock) {
+    sample_ = bytes(begin, size);
+    return;
+  }
+  sample_.clear();
+  for (std::uint64_t block = 0; block < kBlocks; ++block) {
+    const std::uint64_t from = begin + block * (content - kBlock) / (kBlocks - 1);
+    sample_ += bytes(from, from + kBlock);
+  }
 }
 
 core::Attributes AttributeReader::skip(std::uint64_t size) {
@@ -135,22 +108,17 @@ core::Attributes AttributeReader::skip(std::uint64_t size) {
   return attributes;
 }
 
-std::uint32_t AttributeReader::numberAt(std::size_t place) const {
-  std::uint32_t number = 0;  // little-endian, as the machines that ROS runs on
-  std::memcpy(&number, header_.data() + place, sizeof number);
-  return number;
-}
-
-void AttributeReader::readHeader(std::int64_t now, core::Attributes& attributes) {
+void AttributeReader::readHeader(const Head& head, std::int64_t now,
+                                 core::Attributes& attributes) {
   if (isFirst()) {
-    const std::uint32_t number = numberAt(0);
+    const std::uint32_t number = numberAt(0, head);
     if (last_number_ && is_numbered_) {
       attributes.step = core::stepOf(*last_number_, number);
     }
     last_number_ = number;
   }
-  const std::int64_t stamp =
-      std::int64_t{numberAt(*place_ + 4)} * 1000000000 + std::int64_t{numberAt(*place_ + 8)};
+  const std::int64_t stamp = std::int64_t{numberAt(*place_ + 4, head)} * 1000000000 +
+                             std::int64_t{numberAt(*place_ + 8, head)};
   attributes.age = stamp == 0 ? core::Attributes::kZeroStamp : core::ageClass(now - stamp);
 }
 

@@ -3,7 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "self_awareness/core/stream/attributes.h"
@@ -11,7 +14,7 @@
 
 namespace self_awareness::ros1 {
 
-/// Reads the attributes of the messages of one connection, in their order, while their bytes pass:
+/// Reads the attributes of the messages of one connection, in their order:
 /// nothing of them is kept but a sample (docs/method.md, section 3.10).
 class AttributeReader {
  public:
@@ -22,6 +25,9 @@ class AttributeReader {
   /// What an array of any length begins with [bytes].
   static constexpr std::size_t kLengthOfArray = 4;
 
+  /// Bytes of a message, from one place to another one; valid until the next call.
+  using Bytes = std::function<std::string_view(std::uint64_t from, std::uint64_t to)>;
+
   /// @param connection messages whose definition does not begin with a std_msgs/Header, or with an
   /// array of something that does (tf2_msgs/TFMessage), are without one. In an array, that of the
   /// first element tells the age, but no number, and is compared as content. Of rosgraph_msgs/Log,
@@ -30,59 +36,41 @@ class AttributeReader {
   /// its numbers say nothing of losses.
   explicit AttributeReader(const Connection& connection);
 
-  /// Begins a message.
+  /// Takes in the next message. Of a long one, only the bytes that matter are asked for.
   /// @param size of the whole message [bytes]
-  void begin(std::uint64_t size);
-  /// Takes in the next bytes of the message.
-  void add(const std::uint8_t* data, std::size_t size);
-  /// A part of the message [bytes from its begin].
-  struct Part {
-    std::uint64_t begin = 0;
-    std::uint64_t end = 0;
-  };
-  /// The next bytes that matter; empty at the end. What lies before them may be skipped.
-  Part next() const;
-  /// Goes on with the bytes of a place, which lies before the end of next().
-  void skipTo(std::uint64_t place) { position_ = place; }
-  /// Ends the message.
   /// @param now when it came, by the clock that stamps are of [ns]
-  core::Attributes end(std::int64_t now);
+  core::Attributes read(std::uint64_t size, const Bytes& bytes, std::int64_t now);
+  /// The same of a message in memory.
+  core::Attributes read(const std::vector<std::uint8_t>& content, std::int64_t now);
   /// A message that is not read: its bytes are taken to repeat those of the one before as that one
   /// did, its age is not known, and its number goes on.
   /// @param size of the whole message [bytes]
   core::Attributes skip(std::uint64_t size);
 
-  bool hasHeader() const { return place_.has_value(); }
   /// The number of the last message (header.seq); none: it has none.
   std::optional<std::uint32_t> number() const { return last_number_; }
 
  private:
-  static constexpr std::size_t kHeader =
-      16;  // header.seq, header.stamp and the length of frame_id
+  // header.seq, header.stamp and the length of frame_id [bytes]
+  static constexpr std::size_t kHeader = 16;
 
-  /// Calls the function with each part of the message that is compared with that of the one
-  /// before.
-  template <typename Function>
-  void forEachSample(Function function) const;
-  void sample(const std::uint8_t* data, std::uint64_t size);
-  std::uint32_t numberAt(std::size_t place) const;
-  void readHeader(std::int64_t now, core::Attributes& attributes);
+  /// What is read of the header, behind the length of its array, if it lies in one.
+  using Head = std::array<char, kLengthOfArray + kHeader>;
 
+  /// Takes over the parts of the message that are compared with those of the one before.
+  /// @param begin of its content [bytes]
+  void sample(std::uint64_t begin, std::uint64_t size, const Bytes& bytes);
+  void readHeader(const Head& head, std::int64_t now, core::Attributes& attributes);
   /// Whether messages begin with their header.
   bool isFirst() const { return place_ == std::size_t{0}; }
 
   std::optional<std::size_t> place_;  // of the header [bytes]; none: there is none
-  std::size_t header_end_ = 0;        // of its part that is read [bytes]
   bool is_read_ = true;
   bool is_numbered_ = true;
-  std::uint64_t size_ = 0;      // of the message [bytes]
-  std::uint64_t position_ = 0;  // in it [bytes]
-  std::uint64_t content_ = 0;   // where its header has ended [bytes]
-  std::array<std::uint8_t, kLengthOfArray + kHeader> header_{};
-  std::vector<std::uint8_t> sample_;
+  std::string sample_;
   // Of the message before:
   std::optional<std::uint64_t> last_content_;  // behind its header [bytes]; none: there was none
-  std::vector<std::uint8_t> last_sample_;
+  std::string last_sample_;
   std::optional<std::uint32_t> last_number_;
   bool last_same_ = false;
 };

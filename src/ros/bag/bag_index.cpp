@@ -150,8 +150,8 @@ class IndexReader {
         again.definition != before.definition || again.callerid != before.callerid) {
       throw FormatError("the connection " + std::to_string(id) + ", on " + quote(topic) +
                         ", is there twice, with " + quote(before.datatype) + " from " +
-                        quote(before.callerid) + " and with " + quote(again.datatype) +
-                        " from " + quote(again.callerid) +
+                        quote(before.callerid) + " and with " + quote(again.datatype) + " from " +
+                        quote(again.callerid) +
                         (again.datatype == before.datatype ? " of another definition" : ""));
     }
   }

@@ -1,6 +1,7 @@
 #include "bag_messages.h"
 
 #include <algorithm>
+#include <functional>
 #include <utility>
 
 namespace self_awareness::ros1 {
@@ -29,21 +30,20 @@ void BagMessages::read(const BagIndexEntry& entry, std::vector<std::uint8_t>& co
   content.assign(bytes.begin(), bytes.end());
 }
 
-void BagMessages::pass(const BagIndexEntry& entry, AttributeReader& reader) {
+core::Attributes BagMessages::attributes(const BagIndexEntry& entry, AttributeReader& reader) {
   const ChunkRecords& records = this->records(entry.chunk);
   const PiecesOfFile::Head message = head(records, entry);
   const std::uint64_t size = message.end - message.data;
-  reader.begin(size);
-  for (AttributeReader::Part part = reader.next(); part.begin < part.end; part = reader.next()) {
-    // A message that is not much longer is read at once.
-    part.end = size <= kAtOnce ? size : part.end;
+  const auto bytes = [&](std::uint64_t from, std::uint64_t to) {
+    if (size <= kAtOnce) {  // a message that is not much longer is read at once
+      return records.data(message, kAhead).substr(from, to - from);
+    }
     PiecesOfFile::Head piece = message;
-    piece.data = message.data + part.begin;
-    piece.end = message.data + part.end;
-    const std::string_view bytes = records.data(piece, size <= kAtOnce ? kAhead : 0);
-    reader.skipTo(part.begin);
-    reader.add(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  }
+    piece.data = message.data + from;
+    piece.end = message.data + to;
+    return records.data(piece);
+  };
+  return reader.read(size, std::ref(bytes), entry.stamp);
 }
 
 const ChunkRecords& BagMessages::records(std::uint64_t position) {

@@ -25,10 +25,9 @@ class BagMessages {
 
   /// @throw rosbag::BagException if it cannot be read, or is not the one that the index says
   void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content);
-  /// Passes a message by a reader of attributes, whose begin() it calls, but not its end(); where
-  /// the message is not compressed, only the bytes that matter are read.
+  /// The attributes of a message; where it is not compressed, only the bytes that matter are read.
   /// @throw rosbag::BagException as read()
-  void pass(const BagIndexEntry& entry, AttributeReader& reader);
+  core::Attributes attributes(const BagIndexEntry& entry, AttributeReader& reader);
 
  private:
   struct KeptChunk {

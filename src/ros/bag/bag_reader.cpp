@@ -204,12 +204,9 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
       const bool needs_content = tells_mode || (accepted && connection_encoder->needsContent());
       if (needs_content) {
         messages.read(stored, content);
-        reader.begin(content.size());
-        reader.add(content.data(), content.size());
-      } else {
-        messages.pass(stored, reader);
       }
-      const core::Attributes found = reader.end(stored.stamp);
+      const core::Attributes found =
+          needs_content ? reader.read(content, stored.stamp) : messages.attributes(stored, reader);
       if (link) {
         // A copy has the messages of all senders of a topic under one name.
         watch->add(entry.stamp, *link,

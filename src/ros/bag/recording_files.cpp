@@ -158,21 +158,8 @@ std::vector<BagSummary::File> RecordingFiles::files() const {
   return files;
 }
 
-void RecordingFiles::Messages::read(const BagIndexEntry& entry,
-                                    std::vector<std::uint8_t>& content) {
-  inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
-    messages.read(there, content);
-  });
-}
-
-void RecordingFiles::Messages::pass(const BagIndexEntry& entry, AttributeReader& reader) {
-  inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
-    messages.pass(there, reader);
-  });
-}
-
 template <typename Use>
-void RecordingFiles::Messages::inItsFile(const BagIndexEntry& entry, const Use& use) {
+auto RecordingFiles::Messages::inItsFile(const BagIndexEntry& entry, const Use& use) {
   const auto file = std::prev(
       std::upper_bound(files_.begin(), files_.end(), entry.chunk,
                        [](std::uint64_t chunk, const File& each) { return chunk < each.begin; }));
@@ -186,7 +173,7 @@ void RecordingFiles::Messages::inItsFile(const BagIndexEntry& entry, const Use& 
       open_.erase(open_.upper_bound(number + 1), open_.end());
       opened = open_.try_emplace(number, file->path, file->numbers).first;
     }
-    use(opened->second, there);
+    return use(opened->second, there);
   } catch (const rosbag::BagException& error) {
     throw BagError(file->path + ": a message cannot be read (" + error.what() + ")" +
                    reindexHint(file->path));
@@ -194,6 +181,20 @@ void RecordingFiles::Messages::inItsFile(const BagIndexEntry& entry, const Use& 
     throw BagError(file->path + ": the bag is damaged, or there is too little memory" +
                    reindexHint(file->path));
   }
+}
+
+void RecordingFiles::Messages::read(const BagIndexEntry& entry,
+                                    std::vector<std::uint8_t>& content) {
+  inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
+    messages.read(there, content);
+  });
+}
+
+core::Attributes RecordingFiles::Messages::attributes(const BagIndexEntry& entry,
+                                                      AttributeReader& reader) {
+  return inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
+    return messages.attributes(there, reader);
+  });
 }
 
 std::string nameOf(const std::vector<std::string>& paths) {

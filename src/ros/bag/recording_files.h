@@ -40,13 +40,13 @@ class RecordingFiles {
     /// As BagMessages::read().
     /// @throw BagError if it cannot be read, which names the file
     void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content);
-    /// As BagMessages::pass().
+    /// As BagMessages::attributes().
     /// @throw BagError as read()
-    void pass(const BagIndexEntry& entry, AttributeReader& reader);
+    core::Attributes attributes(const BagIndexEntry& entry, AttributeReader& reader);
 
    private:
     template <typename Use>
-    void inItsFile(const BagIndexEntry& entry, const Use& use);
+    auto inItsFile(const BagIndexEntry& entry, const Use& use);
 
     const std::vector<File>& files_;
     std::map<std::ptrdiff_t, BagMessages> open_;  // by index of the file

@@ -156,9 +156,7 @@ void LiveEvents::onArrival(const Arrival& arrival) {
   if (isRead(live, arrival)) {
     read(arrival);
     live.read_at = arrival.steady;
-    live.attributes.begin(content_.size());
-    live.attributes.add(content_.data(), content_.size());
-    event.attributes = live.attributes.end(arrival.stamp);
+    event.attributes = live.attributes.read(content_, arrival.stamp);
     if (arrival.size > kLarge && !encoder->needsContent()) {
       arrivals_.dropContent(arrival.header.get(), arrival.steady + kBetweenReads);
     }
