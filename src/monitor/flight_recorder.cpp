@@ -1,12 +1,11 @@
 #include "flight_recorder.h"
 
-#include <ros/time.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "diagnostics.h"
 #include "ros/text.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness {
 
