@@ -117,11 +117,11 @@ std::optional<SystemState> fetchSystemState() {
 }
 
 std::map<std::string, std::string> fetchAddresses(const std::set<std::string>& nodes) {
-  MasterCalls calls;
+  std::vector<MasterCall> calls;
   for (const std::string& node : nodes) {
-    calls.add("lookupNode", {node});
+    calls.push_back({"lookupNode", {node}});
   }
-  std::vector<std::optional<XmlRpc::XmlRpcValue>> answers = calls.execute();
+  std::vector<std::optional<XmlRpc::XmlRpcValue>> answers = callMaster(calls);
   std::map<std::string, std::string> addresses;
   auto answer = answers.begin();
   for (const std::string& node : nodes) {

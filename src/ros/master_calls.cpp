@@ -24,6 +24,15 @@ bool execute(const std::string& method, const XmlRpcValue& request, XmlRpcValue&
   return done;
 }
 
+XmlRpcValue parametersOf(const MasterCall& call) {
+  XmlRpcValue parameters;
+  parameters[0] = ros::this_node::getName();
+  for (const std::string& argument : call.arguments) {
+    parameters[parameters.size()] = argument;
+  }
+  return parameters;
+}
+
 std::optional<XmlRpcValue> payloadOf(const std::string& method, XmlRpcValue& response) {
   XmlRpcValue payload;
   if (!ros::XMLRPCManager::instance()->validateXmlrpcResponse(method, response, payload)) {
@@ -43,28 +52,19 @@ std::optional<XmlRpcValue> askMaster(const std::string& method) {
                                                                          : std::nullopt;
 }
 
-void MasterCalls::add(const std::string& method, const std::vector<std::string>& arguments) {
-  Call call{method, {}};
-  call.parameters[0] = ros::this_node::getName();
-  for (const std::string& argument : arguments) {
-    call.parameters[call.parameters.size()] = argument;
-  }
-  calls_.push_back(call);
-}
-
-Answers MasterCalls::execute() const {
+Answers callMaster(const std::vector<MasterCall>& calls) {
   Answers answers;
-  for (std::size_t begin = 0; begin < calls_.size(); begin = answers.size()) {
-    const std::size_t end = std::min(begin + kMostTogether, calls_.size());
+  for (std::size_t begin = 0; begin < calls.size(); begin = answers.size()) {
+    const std::size_t end = std::min(begin + kMostTogether, calls.size());
     XmlRpcValue request;
     for (std::size_t i = begin; i < end; ++i) {
       XmlRpcValue& each = request[0][static_cast<int>(i - begin)];
-      each["methodName"] = calls_[i].method;
-      each["params"] = calls_[i].parameters;
+      each["methodName"] = calls[i].method;
+      each["params"] = parametersOf(calls[i]);
     }
     XmlRpcValue response;
-    if (!ros1::execute("system.multicall", request, response)) {
-      answers.resize(calls_.size());  // nobody answers
+    if (!execute("system.multicall", request, response)) {
+      answers.resize(calls.size());  // nobody answers
       break;
     }
     const bool knows_it = response.getType() == XmlRpcValue::TypeArray &&
@@ -75,9 +75,9 @@ Answers MasterCalls::execute() const {
         XmlRpcValue& each = response[static_cast<int>(i - begin)];  // [answer], or a fault
         single = each.getType() == XmlRpcValue::TypeArray && each.size() == 1 ? each[0] : each;
       } else {
-        ros1::execute(calls_[i].method, calls_[i].parameters, single);
+        execute(calls[i].method, parametersOf(calls[i]), single);
       }
-      answers.push_back(payloadOf(calls_[i].method, single));
+      answers.push_back(payloadOf(calls[i].method, single));
     }
   }
   return answers;

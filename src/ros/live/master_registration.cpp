@@ -59,16 +59,14 @@ MasterRegistration::Master MasterRegistration::check() {
 
 std::size_t MasterRegistration::keep(const SystemState& state) {
   const std::string uri = ownUri();
-  MasterCalls calls;
-  std::size_t vanished = 0;
+  std::vector<MasterCall> calls;
   std::vector<std::string> subscribed;
   ros::this_node::getSubscribedTopics(subscribed);
   std::vector<std::string> to_tell;  // which the first calls are about
   for (const std::string& topic : subscribed) {
     if (!knows(state.graph, &Graph::Topic::subscribers, topic)) {
-      calls.add("registerSubscriber", {topic, "*", uri});
+      calls.push_back({"registerSubscriber", {topic, "*", uri}});
       to_tell.push_back(topic);
-      ++vanished;
     }
   }
   std::vector<std::string> advertised;
@@ -77,24 +75,22 @@ std::size_t MasterRegistration::keep(const SystemState& state) {
     const ros::PublicationPtr publication =
         ros::TopicManager::instance()->lookupPublication(topic);
     if (publication && !knows(state.graph, &Graph::Topic::publishers, topic)) {
-      calls.add("registerPublisher", {topic, publication->getDataType(), uri});
-      ++vanished;
+      calls.push_back({"registerPublisher", {topic, publication->getDataType(), uri}});
     }
   }
   for (const std::string& service : services_) {
     if (state.services.count(service) == 0 &&
         ros::ServiceManager::instance()->lookupServicePublication(service)) {
-      calls.add("registerService", {service, service_uri_, uri});
-      ++vanished;
+      calls.push_back({"registerService", {service, service_uri_, uri}});
     }
   }
-  const auto answers = calls.execute();
+  const auto answers = callMaster(calls);
   for (std::size_t i = 0; i < to_tell.size(); ++i) {
     if (answers[i]) {
       tellRoscpp(to_tell[i], *answers[i]);
     }
   }
-  return vanished;
+  return calls.size();
 }
 
 }  // namespace self_awareness::ros1
