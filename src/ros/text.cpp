@@ -1,6 +1,7 @@
 #include "text.h"
 
 #include <algorithm>
+#include <boost/locale/utf.hpp>
 #include <ctime>
 
 #include "self_awareness/core/stream/event.h"
@@ -8,78 +9,31 @@
 namespace self_awareness::ros1 {
 namespace {
 
+using Utf8 = boost::locale::utf::utf_traits<char>;
+
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
 constexpr std::size_t kLongestCharacter = 4;               // [bytes]
 
-bool isBetween(char byte, unsigned low, unsigned high) {
-  const auto value = static_cast<unsigned char>(byte);
-  return value >= low && value <= high;
+/// The character that the bytes begin with.
+struct Character {
+  boost::locale::utf::code_point code = 0;
+  std::size_t length = 0;  // [bytes]; 0: they begin with none
+};
+
+Character characterOf(std::string_view bytes) {
+  const char* at = bytes.data();
+  const auto code = Utf8::decode(at, bytes.data() + bytes.size());
+  const bool is_one =
+      code != boost::locale::utf::illegal && code != boost::locale::utf::incomplete;
+  return {code, is_one ? static_cast<std::size_t>(at - bytes.data()) : 0};
 }
 
-/// Length that the first byte of a character announces; 0: none begins like this.
-std::size_t announcedLength(char first) {
-  return isBetween(first, 0x00, 0x7F)   ? 1
-         : isBetween(first, 0xC2, 0xDF) ? 2
-         : isBetween(first, 0xE0, 0xEF) ? 3
-         : isBetween(first, 0xF0, 0xF4) ? 4
-                                        : 0;
-}
-
-/// Whether the second byte may follow the first (RFC 3629, section 4): no overlong form, no
-/// surrogate, nothing above U+10FFFF.
-bool mayFollow(char first, char second) {
-  switch (static_cast<unsigned char>(first)) {
-    case 0xE0:
-      return isBetween(second, 0xA0, 0xBF);
-    case 0xED:
-      return isBetween(second, 0x80, 0x9F);
-    case 0xF0:
-      return isBetween(second, 0x90, 0xBF);
-    case 0xF4:
-      return isBetween(second, 0x80, 0x8F);
-    default:
-      return isBetween(second, 0x80, 0xBF);
-  }
-}
-
-/// Length of the character that the bytes begin with; 0: they begin with none.
-std::size_t characterLength(std::string_view bytes) {
-  const std::size_t length = announcedLength(bytes[0]);
-  if (length == 0 || length > bytes.size() || (length > 1 && !mayFollow(bytes[0], bytes[1]))) {
-    return 0;
-  }
-  const bool whole = std::all_of(bytes.begin() + 1, bytes.begin() + static_cast<int>(length),
-                                 [](char byte) { return isBetween(byte, 0x80, 0xBF); });
-  return whole ? length : 0;
-}
-
-bool isControl(std::string_view character) {
-  return (character.size() == 1 &&
-          (isBetween(character[0], 0x00, 0x1F) || character[0] == '\x7F')) ||
-         (character.size() == 2 && character[0] == '\xC2' && isBetween(character[1], 0x80, 0x9F));
-}
-
-/// Whether a character turns the order of what follows it around, or breaks the line: a name with
-/// one reads as another name.
-bool isMisleading(std::string_view character) {
-  if (character == "\xD8\x9C") {  // U+061C
-    return true;
-  }
-  if (character.size() != 3 || character[0] != '\xE2') {
-    return false;
-  }
-  return character[1] == '\x80'
-             // U+200E, U+200F, and U+2028 to U+202E
-             ? isBetween(character[2], 0x8E, 0x8F) || isBetween(character[2], 0xA8, 0xAE)
-             // U+2066 to U+2069
-             : character[1] == '\x81' && isBetween(character[2], 0xA6, 0xA9);
-}
-
-/// Length of the character that the bytes begin with, if it may be shown; else 0.
-std::size_t printableLength(std::string_view bytes) {
-  const std::size_t length = characterLength(bytes);
-  const std::string_view character = bytes.substr(0, length);
-  return isControl(character) || isMisleading(character) ? 0 : length;
+/// Whether a character controls the terminal, turns the order of what follows it around, or breaks
+/// the line: a name with one reads as another name.
+bool isMisleading(boost::locale::utf::code_point code) {
+  return code < 0x20 || (code >= 0x7F && code <= 0x9F) || code == 0x061C || code == 0x200E ||
+         code == 0x200F || (code >= 0x2028 && code <= 0x202E) ||
+         (code >= 0x2066 && code <= 0x2069);
 }
 
 /// The first bytes, without a character that this cuts.
@@ -89,8 +43,8 @@ std::string_view firstBytes(std::string_view bytes, std::size_t most) {
   }
   const std::size_t earliest = most - std::min(most, kLongestCharacter - 1);
   for (std::size_t begin = most; begin-- > earliest;) {
-    if (announcedLength(bytes[begin]) > 0) {
-      const std::size_t length = characterLength(bytes.substr(begin));
+    if (Utf8::trail_length(bytes[begin]) >= 0) {
+      const std::size_t length = characterOf(bytes.substr(begin)).length;
       return bytes.substr(0, length > 0 && begin + length > most ? begin : most);
     }
   }
@@ -101,8 +55,8 @@ std::string_view firstBytes(std::string_view bytes, std::size_t most) {
 
 bool isPrintable(std::string_view bytes) {
   while (!bytes.empty()) {
-    const std::size_t length = printableLength(bytes);
-    if (length == 0) {
+    const auto [code, length] = characterOf(bytes);
+    if (length == 0 || isMisleading(code)) {
       return false;
     }
     bytes.remove_prefix(length);
@@ -115,10 +69,9 @@ std::string printable(std::string_view bytes, std::size_t most) {
   std::string text;
   text.reserve(bytes.size());
   while (!bytes.empty()) {
-    const bool shown = printableLength(bytes) > 0;
-    const std::size_t length = std::max<std::size_t>(characterLength(bytes), 1);
-    text += shown ? bytes.substr(0, length) : kReplacement;
-    bytes.remove_prefix(length);
+    const auto [code, length] = characterOf(bytes);
+    text += length == 0 || isMisleading(code) ? kReplacement : bytes.substr(0, length);
+    bytes.remove_prefix(std::max<std::size_t>(length, 1));
   }
   return text;
 }
