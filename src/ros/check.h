@@ -6,8 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
+#include <string_view>
 
+#include "message_cursor.h"
 #include "message_definition.h"
+#include "text.h"
 
 namespace self_awareness::ros1 {
 
@@ -29,7 +32,22 @@ constexpr std::size_t kLongestText = 1 << 16;
 /// left over; its texts are printable. roscpp's deserializer would make room for what a length
 /// says before it looks at the rest.
 /// @throw std::invalid_argument says what is wrong
-void checkMessage(const MessageSteps& steps, const std::uint8_t* data, std::size_t size);
+inline void checkMessage(const MessageSteps& steps, const std::uint8_t* data, std::size_t size) {
+  MessageCursor cursor(data, size);
+  try {
+    cursor.cross(steps, [](std::string_view text) {
+      if (text.size() > kLongestText || !isPrintable(text)) {
+        throw std::invalid_argument(
+            "a text in it is no UTF-8, has control characters, or is too long");
+      }
+    });
+  } catch (const std::out_of_range&) {
+    throw std::invalid_argument("a length in it is wrong");
+  }
+  if (!cursor.atEnd()) {
+    throw std::invalid_argument("there is more in it than belongs to it");
+  }
+}
 
 /// Reads a message of a file.
 /// @throw std::invalid_argument if it is damaged
