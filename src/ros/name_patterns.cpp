@@ -74,9 +74,8 @@ NameRenames::NameRenames(const std::vector<Rename>& renames) : patterns_(pattern
       names_.push_back(name);
       continue;
     }
-    throw std::invalid_argument("encoding: the name " + quote(name) +
-                                " that takes the place of " + quote(renames[k].pattern) + " " +
-                                problem);
+    throw std::invalid_argument("encoding: the name " + quote(name) + " that takes the place of " +
+                                quote(renames[k].pattern) + " " + problem);
   }
 }
 
