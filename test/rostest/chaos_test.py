@@ -134,29 +134,6 @@ class ChaosTest(TrainedCase):
                 name[:100].replace('\xfc', '??') for name in illegal + trained))
 
     @again_if_disturbed
-    def test_what_a_node_of_this_package_says_before_it_is_known_counts_for_nothing(self) -> None:
-        with driver(), self.judging_monitor(poll_interval=1.0), MonitorListener() as listener:
-            self.await_heard(listener)
-            heard = self.publishers_heard(listener)
-
-            def is_heard() -> bool:
-                # One line may come before the connection: the last monitor's may not be closed.
-                rospy.logwarn_throttle(0.5, 'what this node is, is not known yet')
-                return self.publishers_heard(listener) > heard
-
-            await_condition('it is heard', is_heard, 20)
-            heard = self.publishers_heard(listener)
-            known_by = rospy.Publisher('~status', SelfAwareness, queue_size=1)
-            self.addCleanup(known_by.unregister)
-            await_condition('it is known', lambda: self.publishers_heard(listener) < heard, 20)
-            self.assertEqual([each.message for each in listener.statuses
-                              if each.unknown_events and not each.settling], [])
-
-    @staticmethod
-    def publishers_heard(listener: MonitorListener) -> int:
-        return int(listener.value('monitor', 'publishers heard') or 0)
-
-    @again_if_disturbed
     def test_new_names_without_end_silence_nothing(self) -> None:
         topics = ['/come_and_go_{}'.format(number) for number in range(200)]
         stop = threading.Event()

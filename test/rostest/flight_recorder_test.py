@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""The flight recorder: what the monitor heard before an alarm is in a file that `score` reads."""
+"""What the monitor writes of what it heard: before an alarm, and, to learn more, what was normal.
+"""
 
 import copy
 import glob
 import os
 import re
 import signal
+import time
 from typing import List
 
 import rosbag
@@ -16,8 +18,10 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from live_system import MonitorListener, again_if_disturbed, await_condition, run_program
 from monitor_case import Talker, TrainedCase, base, driver
 from self_awareness.msg import SelfAwareness
+from self_awareness.srv import Maintenance
 
 FILE = re.compile(r'; events in (/\S+/alarm_[-\d.]+\.bag)')
+LONGER_S = 12.0  # than the shortest stretch of normal operation that is kept
 LOAD = re.compile(r' \(load [\d.]+ on \d+ cores?\)')
 
 
@@ -103,6 +107,27 @@ class FlightRecorderTest(TrainedCase):
             await_condition('all is well', lambda: (
                 listener.diagnostics('monitor')[-1].level == DiagnosticStatus.OK), 20)
             self.assertEqual(self.files('*.part'), [])
+
+    @again_if_disturbed
+    def test_what_was_normal_is_kept_but_for_maintenance(self) -> None:
+        model = self.model()
+        for is_maintained in (True, False):
+            with Talker('/a'), MonitorListener() as listener, \
+                    self.monitor(model, learn_more='true'):
+                listener.await_settled()
+                if is_maintained:
+                    rospy.wait_for_service('/self_awareness/maintenance', 20)
+                    rospy.ServiceProxy('/self_awareness/maintenance', Maintenance)(duration=60.0)
+                begin = time.monotonic()
+                await_condition('it has heard enough',
+                                lambda: time.monotonic() > begin + LONGER_S, 40)
+                self.assertIsNotNone(listener.value('monitor', 'logs kept to learn from'))
+            kept = glob.glob(model + '.kept/*')
+            self.assertEqual(len(kept), 0 if is_maintained else 1, kept)
+        self.assertRegex(kept[0], r'/model\.kept/normal_[-\d]+\.\d{3}\.bag$')
+        said = run_program('info', kept[0], '--details')
+        self.assertIn('/a std_msgs/String', said)
+        self.assertIn('robot started', said)
 
 
 if __name__ == '__main__':

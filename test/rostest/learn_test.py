@@ -43,7 +43,7 @@ class LearnCase(FolderCase):
         self.addCleanup(timer.shutdown)
 
     def learn(self, hours: float) -> Process:
-        # As in monitor_test: few false alarms are allowed on a busy machine.
+        # Limits of minutes are narrow: few false alarms are allowed on a busy machine.
         return Process('roslaunch', 'self_awareness', 'learn.launch', 'model:=' + self.model,
                        'hours:={}'.format(hours), 'start_up:=2', 'subscribe:=all',
                        'budget:=0.01')

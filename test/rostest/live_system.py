@@ -36,9 +36,6 @@ DISTURBED_S = 0.4
 """A machine that stands still, or whose clock is set, by less disturbs no test [s]: the monitor
 calls 0.5 s a standstill."""
 
-PRESSURE = '/proc/pressure/cpu'
-"""Where the kernel tells for how long processes wait; not every one does."""
-
 
 def await_condition(what: str, condition: Callable[[], Optional[T]], timeout: float) -> T:
     """The condition's value as soon as it is true; AssertionError after `timeout` [s]."""
@@ -201,30 +198,6 @@ def run_program(program: str, *arguments: str) -> str:
     if done.returncode != 0:
         raise AssertionError('{}: {}'.format(program, done.stderr))
     return done.stdout
-
-
-class Waiting:
-    """How long processes have waited for a processor since this was made; 0 without PRESSURE."""
-
-    def __init__(self) -> None:
-        self._before = self._total()
-        self._began = time.monotonic()
-
-    def seconds(self) -> float:
-        """The time in which one of them waited, at least."""
-        return self._total() - self._before
-
-    def share(self) -> float:
-        """The share of the time."""
-        return self.seconds() / (time.monotonic() - self._began)
-
-    @staticmethod
-    def _total() -> float:
-        """Since the machine began [s]."""
-        if not os.path.exists(PRESSURE):
-            return 0.0
-        with open(PRESSURE) as file:
-            return int(file.read().split('total=')[1].split()[0]) / 1e6
 
 
 class MonitorListener:

@@ -80,19 +80,6 @@ class SettlingTest(TrainedCase):
     # ~reload
 
     @again_if_disturbed
-    def test_reload_takes_a_standing_alarm_back(self) -> None:
-        with self.monitor(self.model(), hold_time=600):
-            with MonitorListener() as listener:
-                with Talker('/a'):
-                    listener.await_settled()
-                listener.await_alarm()
-                self.assertTrue(self.call('/self_awareness/reload').success)
-            with MonitorListener() as late:
-                alarm = await_condition('the latched message', lambda: late.alarms, 20)[0]
-            self.assertEqual(alarm.level, SelfAwareness.OK)
-            self.assertEqual(alarm.message, 'settling: model loaded')
-
-    @again_if_disturbed
     def test_reload_takes_the_model_that_is_set_now(self) -> None:
         first, second = self.model(name='first'), self.model(name='second', topics=('/a', '/b'))
         with Talker('/a'), Talker('/b'), self.monitor(first), MonitorListener() as listener:
