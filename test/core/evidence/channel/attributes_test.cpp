@@ -2,17 +2,90 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <random>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "../attribute_alarms.h"
+#include "../attributed.h"
+#include "../judged.h"
 #include "../tracks.h"
+#include "self_awareness/core/evidence/limits/coverage.h"
 
 namespace self_awareness::core::evidence {
 namespace {
+
+constexpr std::int64_t kLength = 200 * kSecond;
+constexpr std::int64_t kFault = 60 * kSecond;  // after the start of a recording
+
+/// Two sources, the second of which is always healthy.
+Events robot(const Source& source, unsigned seed, std::int64_t length = kLength) {
+  const std::int64_t start = (seed + 1) * kStart;
+  return together({messages(kA, start, start + length, source, seed),
+                   messages(kB, start + 7 * kMillisecond, start + length, {}, seed + 100)});
+}
+
+/// Contents that change for minutes change always, so that recordings may be short.
+Tuning withFrozen() {
+  Tuning tuning;
+  tuning.changing_time = 300;
+  return tuning;
+}
+
+/// A model of recordings, each of a start of its own.
+std::shared_ptr<const core::Model> learned(const std::vector<Events>& recordings,
+                                           const Tuning& tuning = withFrozen()) {
+  return std::make_shared<core::Model>(learnedFrom({kTypes[kA], kTypes[kB]}, recordings, tuning));
+}
+
+/// Four starts of a robot.
+/// @param start its events, by its seed
+template <typename Start>
+std::vector<Events> fourStarts(const Start& start) {
+  return {start(0), start(1), start(2), start(3)};
+}
+
+std::shared_ptr<const core::Model> learned(const Source& source) {
+  return learned(fourStarts([&](unsigned seed) { return robot(source, seed); }));
+}
+
+bool watches(const core::Model& model, const std::string& channel, EventId id = kA) {
+  const std::size_t track = indexOf(model.watched.tracks, channel, id, id);
+  return track < model.watched.tracks.size() && !std::isnan(model.limits()->tracks[track]);
+}
+
+/// What is not judged of the topics of a model.
+std::vector<Coverage::Blind> blindIn(const core::Model& model) {
+  std::vector<Coverage::Blind> all;
+  for (const Coverage& of :
+       coverageOf(Model(model.watched), *model.limits(), {}, model.window, false)) {
+    all.insert(all.end(), of.blind.begin(), of.blind.end());
+  }
+  return all;
+}
+
+std::optional<Begun> alarmIn(const core::Model& model, const Events& events) {
+  return evidence::alarmIn(model.makeJudge(), events);
+}
+
+/// Changes what all messages of the first source say.
+template <typename Change>
+std::vector<Events> recordingsWhere(Change change) {
+  return fourStarts([&](unsigned seed) {
+    Events events = robot({}, seed);
+    std::size_t number = 0;
+    for (Event& event : events) {
+      if (event.id == kA) {
+        change(event, number++);
+      }
+    }
+    return events;
+  });
+}
 
 /// For how long alarms stand in a recording [s].
 double lengthOfAlarms(const core::Model& model, const Events& events) {
@@ -283,6 +356,130 @@ TEST(Frozen, MinutesOfTrainingDoNotSayThatContentsAlwaysChange) {
   EXPECT_FALSE(watches(*model, kFrozen));
   ASSERT_EQ(blindIn(*model).size(), 2U);
   EXPECT_EQ(blindIn(*model)[0].why, "0.2 h in 3 starts, 2 h in 3 are needed");
+}
+
+// What they leave out: pauses, and how sources start.
+
+// A source that sends for a while, and then pauses.
+constexpr std::int64_t kSends = 40 * kSecond;
+constexpr std::int64_t kPauses = 30 * kSecond;
+
+Events pausing(unsigned seed) {
+  const std::int64_t start = (seed + 1) * kStart;
+  const std::int64_t end = start + 5 * (kSends + kPauses);
+  Events events = messages(kB, start + 7 * kMillisecond, end, {}, seed + 100);
+  for (std::int64_t begin = start; begin < end; begin += kSends + kPauses) {
+    events = together({events, messages(kA, begin, begin + kSends, {}, seed)});
+  }
+  return events;
+}
+
+struct Fault {
+  std::string channel;
+  std::function<void(Event&, std::int64_t)> change;  // given the time since its begin [ns]
+};
+
+class PauseTest : public testing::TestWithParam<Fault> {};
+
+TEST_P(PauseTest, AnAlarmEndsWhenItsSourcePauses) {
+  const auto model = learned(fourStarts(pausing));
+  Events events = pausing(10);
+  const std::int64_t pause = events.front().stamp + 2 * (kSends + kPauses) + kSends;
+  const std::int64_t onset = pause - 4 * kSecond;
+  for (Event& event : events) {
+    if (event.id == kA && event.stamp >= onset && event.stamp < pause) {
+      GetParam().change(event, event.stamp - onset);
+    }
+  }
+  int before = 0;
+  int after = 0;
+  judge(model->makeJudge(), events, [&](const Verdict& verdict) {
+    if (verdict.evidence.find(GetParam().channel) != std::string::npos) {
+      ++(verdict.window->start < pause + kRateSpan ? before : after);
+    }
+  });
+  EXPECT_GT(before, 10);
+  EXPECT_EQ(after, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Channels, PauseTest,
+    testing::Values(
+        Fault{kAge,
+              [](Event& event, std::int64_t since) { event.attributes.age = ageClass(since); }},
+        Fault{kLost,
+              [](Event& event, std::int64_t since) {
+                if (since / (100 * kMillisecond) % 2 == 0) {
+                  event.attributes.step = Attributes::Step::kLostOne;
+                }
+              }},
+        Fault{kSize, [](Event& event, std::int64_t) { event.attributes.size = sizeClass(10); }},
+        Fault{kFrozen, [](Event& event, std::int64_t) { event.attributes.same = true; }}));
+
+TEST(Lost, WhatIsLostFromPauseToPauseAddsUp) {
+  const auto model = learned(fourStarts(pausing));
+  Events events;
+  std::int64_t last = 0;
+  for (Event event : pausing(10)) {
+    if (event.id == kA) {
+      if (event.stamp % (5 * kSecond) < 2500 * kMillisecond) {
+        continue;  // the network is down
+      }
+      if (last > 0 && event.stamp - last > kRateSpan) {
+        event.attributes.step = Attributes::Step::kLostMany;
+      }
+      last = event.stamp;
+    }
+    events.push_back(event);
+  }
+  int lost = 0;
+  judge(model->makeJudge(), events, [&](const Verdict& verdict) {
+    lost += verdict.evidence.find(kLost) != std::string::npos ? 1 : 0;
+  });
+  EXPECT_GT(lost, 100);
+}
+
+double limitOf(const core::Model& model, const std::string& channel) {
+  return model.limits()->tracks.at(indexOf(model.watched.tracks, channel, kA, kA));
+}
+
+TEST(Start, AFirstStampThatIsOddIsForgotten) {
+  const auto usual = learned(Source{});
+  for (const std::uint8_t age : {Attributes::kZeroStamp, ageClass(-600 * kSecond)}) {
+    const auto model = learned(recordingsWhere([&](Event& event, std::size_t number) {
+      if (number < 3) {
+        event.attributes.age = age;
+      }
+    }));
+    ASSERT_TRUE(watches(*model, kAge)) << +age;
+    EXPECT_NEAR(limitOf(*model, kAge), limitOf(*usual, kAge), 0.01) << +age;
+  }
+}
+
+TEST(Age, AFewMessagesMayLackAStamp) {
+  for (const std::size_t every : {50U, 200U}) {
+    const auto model = learned(recordingsWhere([&](Event& event, std::size_t number) {
+      if (number % every == every - 1) {
+        event.attributes.age = Attributes::kZeroStamp;
+      }
+    }));
+    EXPECT_EQ(watches(*model, kAge), every == 200);
+    if (every == 200) {
+      EXPECT_LT(limitOf(*model, kAge), 1);
+    }
+  }
+}
+
+TEST(Frozen, APauseBetweenTwoThatAreTheSameIsNoReasonToSwitchItOff) {
+  const auto model = learned(fourStarts([](unsigned seed) {
+    const std::int64_t start = (seed + 1) * kStart;
+    const Events first = messages(kA, start, start + 100 * kSecond, {}, seed);
+    Events second = messages(kA, start + 131 * kSecond, start + kLength, {}, seed);
+    second[0].attributes.same = true;
+    return together({first, second, messages(kB, start, start + kLength, {}, seed + 100)});
+  }));
+  ASSERT_TRUE(watches(*model, kFrozen));
+  EXPECT_LT(limitOf(*model, kFrozen), 4);
 }
 
 }  // namespace

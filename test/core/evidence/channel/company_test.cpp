@@ -2,11 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
+#include "../judged.h"
 #include "channel_case.h"
+#include "core/evidence/watch/relations.h"
+#include "self_awareness/core/evidence/limits/limits.h"
+#include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -35,16 +41,20 @@ Events modes(std::int64_t begin) {
                begin);
 }
 
-class CompanyTest : public TrackTest {
+class InCompanyTest : public TrackTest {
+ protected:
+  bool watches(EventId to, EventId from) const {
+    return isWatched(model_->tracks(), kCompany, to, from);
+  }
+};
+
+class CompanyTest : public InCompanyTest {
  protected:
   void learn(const SourceGraph& graph = {}) {
     learn(countsOf({modes(kStart)}), countsOf({modes(2 * kStart)}), graph);
   }
   void learn(const Statistics& first, const Statistics& second, const SourceGraph& graph = {}) {
     TrackTest::learn(watch(first, second, graph), kCompany, kA, kB);
-  }
-  bool watches(EventId to, EventId from) const {
-    return isWatched(model_->tracks(), kCompany, to, from);
   }
 };
 
@@ -134,6 +144,234 @@ TEST_F(CompanyTest, ALeastTimePassesHoweverFastTheOtherIs) {
   };
   EXPECT_NEAR(least(kB, kA), model_->tuning().least_lateness / toSeconds(kFast), 2);
   EXPECT_NEAR(least(kA, kB), model_->tuning().least_lateness / toSeconds(kSlow), 1);
+}
+
+constexpr EventId kPlan = 0;
+constexpr EventId kImu = 1;
+constexpr EventId kState = 2;
+constexpr EventId kDriving = 3;
+constexpr EventId kDocked = 4;
+constexpr EventId kNewMode = 5;
+const std::vector<EventType> kRobot{
+    {"/planner", "/plan", "T"},
+    {"/imu", "/imu/data", "T"},
+    {"/logic", "/state", "S"},
+    {"/logic", "/state", typeOfMode("S", "DRIVING")},
+    {"/logic", "/state", typeOfMode("S", "DOCKED")},
+};
+
+constexpr std::int64_t kDrive = 20 * kSecond;
+constexpr std::int64_t kCharge = 100 * kSecond;
+constexpr std::int64_t kCycle = kDrive + kCharge;
+constexpr std::int64_t kPlanning = 100 * kMillisecond;
+constexpr std::int64_t kEnd = 5 * kCycle;
+
+/// A message that says a state, and what it says of the mode.
+Events told(std::int64_t stamp, EventId mode, bool with_mode) {
+  return with_mode ? Events{{stamp, mode}, {stamp, kState}} : Events{{stamp, kState}};
+}
+
+/// A robot that drives and charges in turn, and says so when it begins to. The planner plans while
+/// it drives, until it dies.
+Events driving(std::int64_t begin, bool with_mode = true, std::int64_t planner_dies = kEnd) {
+  Events plans;
+  Events states;
+  for (std::int64_t start = 0; start < kEnd; start += kCycle) {
+    const std::int64_t end = std::min(start + kDrive, planner_dies);
+    plans = together({plans, timer(kPlan, start + 300 * kMillisecond, end, kPlanning)});
+    states = together(
+        {states, told(start, kDriving, with_mode), told(start + kDrive, kDocked, with_mode)});
+  }
+  return later(together({states, plans, timer(kImu, 7 * kMillisecond, kEnd, kPlanning)}), begin);
+}
+
+class ModeCompanyTest : public InCompanyTest {
+ protected:
+  void learn(const SourceGraph& graph = {}, const std::vector<EventType>& types = kRobot) {
+    TrackTest::learn(
+        watch(countsOf({driving(kStart)}, types), countsOf({driving(2 * kStart)}, types), graph),
+        kCompany, kPlan, kDriving);
+  }
+};
+
+TEST_F(ModeCompanyTest, WhoPausesInOtherModesIsInCompanyWithOne) {
+  learn();
+  EXPECT_TRUE(watches(kPlan, kDriving));
+  EXPECT_FALSE(watches(kPlan, kDocked));
+  EXPECT_FALSE(watches(kImu, kDriving)) << "it does not pause";
+  EXPECT_FALSE(watches(kDriving, kPlan)) << "a mode cannot be silent";
+}
+
+TEST_F(ModeCompanyTest, WhoHearsItOrTellsItIsInCompanyAsWell) {
+  SourceGraph graph;
+  graph.connect("/logic", "/state", "/planner");
+  graph.connect("/planner", "/plan", "/logic");
+  learn(graph);
+  EXPECT_TRUE(watches(kPlan, kDriving)) << "the mode lasts, whoever has died";
+  std::vector<EventType> types = kRobot;
+  types[kPlan].source = types[kState].source;
+  learn({}, types);
+  EXPECT_TRUE(watches(kPlan, kDriving)) << "of one node";
+}
+
+TEST_F(ModeCompanyTest, NobodyElseSeesAMode) {
+  learn();
+  const Watched without = watch(countsOf({driving(kStart, false)}, kRobot),
+                                countsOf({driving(2 * kStart, false)}, kRobot));
+  std::vector<Track> others;
+  for (const Track& track : model_->tracks()) {
+    if (track.from != kDriving) {
+      others.push_back(track);
+    }
+  }
+  expectSameTracks(others, without.tracks);
+  const Model plain(without);
+  EXPECT_EQ(model_->learned().delaysToAny()[kPlan], plain.learned().delaysToAny()[kPlan]);
+  const SourceGraph graph;
+  const Tuning tuning;
+  EXPECT_EQ(Relations(countsOf({driving(kStart)}, kRobot), graph, tuning).lookedAt(), 6)
+      << "of the three that come often";
+  EXPECT_EQ(countsOf({driving(kStart)}, kRobot).rateWindows(),
+            countsOf({driving(kStart, false)}, kRobot).rateWindows());
+}
+
+TEST_F(ModeCompanyTest, EvidenceIsTheTimeThatTheModeHasLasted) {
+  learn();
+  scorer_->enter({0, kDriving});
+  scorer_->add({kSecond, kPlan});
+  EXPECT_EQ(evidenceAt(kSecond), 0);
+  EXPECT_EQ(evidenceAt(6 * kSecond), 5);
+  EXPECT_EQ(reason().kind, Kind::kSilent);
+  EXPECT_EQ(reason().after, "/logic /state S[mode: DRIVING]");
+  EXPECT_EQ(reason().unit, unit::kSeconds);
+  EXPECT_EQ(reason().value, 5);
+  EXPECT_EQ(reason().words,
+            "has not come for 5 s of the mode DRIVING (/state), in which it does not pause");
+  scorer_->enter({7 * kSecond, kDocked});
+  EXPECT_EQ(evidenceAt(100 * kSecond), 6) << "the other mode says nothing";
+  scorer_->enter({200 * kSecond, kDriving});
+  EXPECT_EQ(evidenceAt(202 * kSecond), 8);
+  scorer_->add({202 * kSecond, kPlan});
+  EXPECT_EQ(evidenceAt(203 * kSecond), 1);
+}
+
+TEST_F(ModeCompanyTest, LimitsKnowTheModeThatLastsWhenTheClockIsSet) {
+  learn();
+  LimitFinder finder(model_, {kWindow, 5 * kSecond});
+  finder.startRecording(model_);
+  finder.add({500 * kSecond, kDriving});
+  finder.add({501 * kSecond, kPlan});
+  finder.add({10 * kSecond, kPlan});
+  addAll(finder, timer(kImu, 10 * kSecond, 30 * kSecond, kPlanning));
+  finder.add({30 * kSecond, kPlan});  // what it says of a silence that never ends is not known
+  finder.add({31 * kSecond, kImu});
+  finder.finish();
+  EXPECT_NEAR(finder.findings().back().parts.back().evidence[track_], 20, 0.2);
+}
+
+TEST_F(ModeCompanyTest, WhatIsForgottenBeginsAnew) {
+  learn();
+  scorer_->enter({0, kDriving});
+  scorer_->add({0, kPlan});
+  EXPECT_EQ(evidenceAt(9 * kSecond), 9);
+  scorer_->forget(kDriving);
+  EXPECT_EQ(evidenceAt(10 * kSecond), 0);
+  EXPECT_EQ(evidenceAt(11 * kSecond), 1);
+}
+
+TEST_F(ModeCompanyTest, ItHasTheLeastLimitOfWhoComesEverySecond) {
+  learn();
+  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
+  EXPECT_EQ(model_->expectation(track_).timeUntil(track_, 4), 4.0 * kSecond);
+}
+
+/// What a model learns of starts of this robot, and what it says then.
+class ModeLearnedTest : public testing::Test {
+ protected:
+  static core::Model learned(bool with_mode) {
+    return learnedFrom(kRobot, {driving(kStart, with_mode), driving(2 * kStart, with_mode),
+                                driving(3 * kStart, with_mode), driving(4 * kStart, with_mode)});
+  }
+  /// A judge that hears of one mode more, kNewMode.
+  static std::unique_ptr<core::Judge> judgeOf(const core::Model& model) {
+    const auto heard = std::make_shared<Vocabulary>(model.vocabulary());
+    heard->intern({"/logic", "/state", typeOfMode("S", "LOST")});
+    return model.makeJudge(heard);
+  }
+};
+
+// A planner that dies while the robot drives is looked for as long as a charge lasts, unless the
+// mode says that it drives.
+TEST_F(ModeLearnedTest, ADeathWhileDrivingIsFoundSoon) {
+  const std::int64_t dies = 2 * kCycle + 5 * kSecond;
+  const auto found = alarmIn(judgeOf(learned(true)), driving(9 * kStart, true, dies));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->suspects.at(0).component, "/planner");
+  EXPECT_LT(found->time - 9 * kStart - dies, 10 * kSecond);
+  EXPECT_GT(found->time - 9 * kStart - dies, 2 * kSecond);
+
+  const auto without = alarmIn(judgeOf(learned(false)), driving(9 * kStart, false, dies));
+  EXPECT_TRUE(!without || without->time - 9 * kStart - dies > kCharge);
+}
+
+TEST_F(ModeLearnedTest, NobodyWaitsForAMode) {
+  const core::Model model = learned(true);
+  judge(model.makeJudge(), driving(9 * kStart, false), [&](const Verdict& verdict) {
+    EXPECT_FALSE(verdict.alarm || verdict.suspicion) << verdict.evidence;
+  });
+  const std::vector<Coverage> coverage = model.coverage();
+  const auto logic = std::find_if(coverage.begin(), coverage.end(),
+                                  [](const Coverage& each) { return each.component == "/logic"; });
+  ASSERT_NE(logic, coverage.end());
+  EXPECT_EQ(logic->gaps, 4U * 9) << "those between its messages";
+}
+
+TEST_F(ModeLearnedTest, WhileItChargesNothingIsWrong) {
+  const core::Model model = learned(true);
+  EXPECT_FALSE(alarmIn(judgeOf(model), driving(9 * kStart)));
+  // It charges for longer than ever: the silence of the planner is unusual then, as without modes;
+  // the mode does not make it worse.
+  Events longer = driving(9 * kStart);
+  for (Event& event : longer) {
+    if (event.stamp >= 9 * kStart + kCycle && event.id != kImu) {
+      event.stamp += 20 * kSecond;
+    }
+  }
+  longer = together(
+      {longer, timer(kImu, 9 * kStart + kEnd, 9 * kStart + kEnd + 20 * kSecond, kPlanning)});
+  EXPECT_FALSE(alarmIn(judgeOf(model), longer));
+}
+
+TEST_F(ModeLearnedTest, WhoMissedAMessageOfTheModeDoesNotKnowIt) {
+  const core::Model model = learned(true);
+  const std::int64_t dead = kCycle + 2 * kSecond;
+  const auto dies = [&](const std::vector<EventId>& missed) {
+    bool alarm = false;
+    Detector detector(model.makeJudge(), model.window, {},
+                      [&](const Verdict& verdict) { alarm = alarm || verdict.alarm; });
+    addAll(detector, without(driving(9 * kStart, true, dead), [&](const Event& event) {
+             return event.stamp >= 9 * kStart + dead;
+           }));
+    detector.onMissed(missed, 9 * kStart + dead);
+    addAll(detector, later(timer(kImu, dead, kCycle + kDrive, kPlanning), 9 * kStart));
+    detector.finish();
+    return alarm;
+  };
+  EXPECT_TRUE(dies({kState}));
+  EXPECT_FALSE(dies({kState, kDriving, kDocked})) << "it may be another one by now";
+}
+
+TEST_F(ModeLearnedTest, AModeThatTrainingNeverSawIsNeitherAStrangerNorAReason) {
+  const core::Model model = learned(true);
+  EXPECT_FALSE(judgeOf(model)->add({9 * kStart, kNewMode})) << "no message of its own";
+  // In the third drive something else is done for 15 s, and nothing is planned.
+  const std::int64_t begin = 9 * kStart + 2 * kCycle + kSecond;
+  const std::int64_t end = begin + 15 * kSecond;
+  const Events silent = without(driving(9 * kStart), [&](const Event& event) {
+    return event.id == kPlan && event.stamp >= begin && event.stamp < end;
+  });
+  EXPECT_FALSE(alarmIn(judgeOf(model), together({silent, {{begin, kNewMode}, {end, kDriving}}})));
+  EXPECT_TRUE(alarmIn(judgeOf(model), silent)) << "the same without the mode that is told";
 }
 
 }  // namespace
