@@ -61,18 +61,6 @@ def test_a_live_model_without_limits_gets_some_that_are_never_reached(tmp_path: 
     assert limits and set(limits) == {1e6}
 
 
-def test_jobs_are_compared_with_one_process_where_they_were_measured() -> None:
-    result = json.loads((DOCS / 'performance' / 'bags.json').read_text())
-    result.pop('jobs', None)
-    images = module('bags').markdown(result)
-    result['jobs'] = {'rounds': 3, 'seconds': 60.0, 'bags': 8, 'types': 300, 'messages': 1000,
-                      'cores': 2, 'jobs': {'1': {'wall_s': 12.0, 'cpu_s': 12.5},
-                                           '2': {'wall_s': 8.0, 'cpu_s': 14.0}}}
-    text = module('bags').markdown(result)
-    assert text == (f'{images}\n\n`train` on 8 bags of 300 event types, 1,000 messages, 2 cores: '
-                    '`--jobs 1` 12.00 s (1.00), `--jobs 2` 8.00 s (1.50).')
-
-
 def test_publishing_replaces_a_section_and_nothing_else(tmp_path: Path) -> None:
     (tmp_path / 'performance.md').write_text('a\n<!-- x -->\nold\n<!-- /x -->\nb\n')
     module('page').publish('x', {'cores': 2}, 'new', tmp_path)

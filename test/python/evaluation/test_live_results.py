@@ -37,25 +37,6 @@ def test_the_faults_of_the_soak_in_the_repository_are_those_of_its_rows() -> Non
     assert wrong == []
 
 
-def test_a_session_is_told_in_a_line_for_each_kind() -> None:
-    crash = Row('cc1', 'player', round=1, lasted_s=6.0, suspicion_s=0.2, latency_s=0.3, first=True)
-    quiet = Row('undisturbed', '', lasted_s=360.0, alarms=1, suspicions=2, watched=14,
-                components=15)
-    rows = [crash, replace(crash, round=2, latency_s=0.4, first=False),
-            replace(crash, round=3, suspicion_s=None, latency_s=None, first=None),
-            replace(crash, round=4, latency_s=None, void='the alarm stood'), quiet,
-            replace(quiet, alarms=0), replace(quiet, fault='bursts', lasted_s=90.0),
-            replace(crash, fault='lat', latency_s=None, first=None)]
-    assert of_faults(rows)[0] == [
-        '- faults: alarms 2 of 4, median 0.40 s; WARN or alarm 3 of 4, median 0.20 s; '
-        'the right node first 1 of 2; never an alarm: lat',
-        '- undisturbed, 12 min: false alarms 1 (95 %: 0.9 to 28.3 an hour), suspicions 4, '
-        'watched 14 of 15',
-        '- bursts, 1.5 min: false alarms 1 (95 %: 7.1 to 226.6 an hour), suspicions 2, '
-        'watched 14 of 15',
-        '- void: cc1 player (the alarm stood)']
-
-
 def normal(at_s: float, alarms: int = 0) -> Row:
     """Return 100 s of normal operation at 1600 messages a second."""
     return Row('normal', '', onset=at_s, lasted_s=100.0, alarms=alarms, said='why',

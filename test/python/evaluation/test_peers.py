@@ -7,8 +7,7 @@ import pytest
 from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.records import WindowedEvents
-from self_awareness_evaluation.systems import (SPAN, FrequencyMonitor, GapBounds, GapMonitor,
-                                               messages_in_span)
+from self_awareness_evaluation.systems import FrequencyMonitor, GapBounds, GapMonitor
 from self_awareness_evaluation.variants import SYSTEMS, Variant
 
 from evaluation_robot import START, robot
@@ -32,12 +31,6 @@ def test_the_crash_of_the_only_fast_topic_is_seen_and_normal_operation_is_quiet(
     assert alarm.suspects is not None and alarm.suspects[0] == '/player'
     assert not alarm.cleared
     assert system.judge(robot(100.0, 5)).alarms == []
-
-
-def test_messages_in_the_span() -> None:
-    stamps = np.array([0, 1, 4, 5, 6]) * SECOND_NS
-    assert messages_in_span(stamps, np.array([SPAN, SPAN + SECOND_NS, 20 * SECOND_NS])).tolist() \
-        == [3, 3, 0]
 
 
 def test_the_frequency_monitor_takes_its_limits_from_the_recordings() -> None:
