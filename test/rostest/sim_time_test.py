@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Replays and simulated time: /clock is absent, comes twice, stands still, jumps, loops."""
+"""Simulated time: /clock is absent, comes twice, stands still, jumps, ends."""
 
 import glob
 import random
@@ -15,7 +15,7 @@ from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
 from live_system import (START_S, THRESHOLD, MonitorListener, Process, again_if_disturbed,
-                         await_condition, make_model, operation, ours, write_bag)
+                         await_condition, make_model, ours)
 from monitor_case import FolderCase
 from self_awareness import EncodingRules, read_events
 from self_awareness.msg import SelfAwareness
@@ -161,33 +161,6 @@ class SimTimeTest(FolderCase):
             self.assertEqual(listener.diagnostics('communication')[-1].message,
                              'waiting for the first message')
             self.assertEqual(listener.statuses, [])
-
-    @again_if_disturbed
-    def test_replay_in_a_loop(self) -> None:
-        bag = write_bag(self.path('loop.bag'), operation(COMPONENTS, 4, seed=3))
-        with MonitorListener() as listener, self.start_monitor() as monitor:
-            self.await_listening(listener)
-            with Process('rosbag', 'play', '--clock', '--loop', bag):
-                await_condition('the bag is played for the third time',
-                                lambda: len(self.passes(listener.statuses)) == 3, 60)
-                listener.await_settled()
-                await_condition('2 s of the third time',
-                                lambda: len(self.passes(listener.statuses)[2]) > 20, 20)
-                self.check_heartbeats(listener)
-            for windows in self.passes(listener.statuses):
-                self.assertTrue(windows[0].settling, windows[0])
-            self.check_normal(listener.statuses)
-            self.assertGreaterEqual(monitor.output.count(CLOCK_WAS_SET), 2, monitor.output)
-            self.check_no_alarm(listener)
-
-    def passes(self, statuses: List[SelfAwareness]) -> List[List[SelfAwareness]]:
-        """The statuses, cut where the windows went back in time."""
-        passes: List[List[SelfAwareness]] = []
-        for status in statuses:
-            if not passes or status.window_start < passes[-1][-1].window_start:
-                passes.append([])
-            passes[-1].append(status)
-        return passes
 
     @again_if_disturbed
     def test_two_publishers_of_the_clock_hide_no_death(self) -> None:
