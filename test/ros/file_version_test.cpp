@@ -152,8 +152,8 @@ TEST_F(FileVersionTest, AModelOfAFormatOfNoReleaseIsRefusedWithTheWayOut) {
   EXPECT_EQ(readFileVersion(rewritten(model(), std::nullopt), kModelFile).format, 1U);
   for (const std::optional<FileVersion>& version : {std::optional(former), {std::nullopt}}) {
     const std::string error = modelError(rewritten(model(), version));
-    EXPECT_EQ(error, path("rewritten") + ": of format " + (version ? "6" : "1") +
-                         ", which was of no release and is not read any more (format 7 is the "
+    EXPECT_EQ(error, path("rewritten") + ": of format " + (version ? "7" : "1") +
+                         ", which was of no release and is not read any more (format 8 is the "
                          "first one); train it again (rosrun self_awareness train)");
   }
 }

@@ -21,10 +21,10 @@ STARVATION_DOUBLING_S = 20.0
 EACH = '*'
 """Stands for each source in turn."""
 
-FORMS = 'crash:SOURCE, slow:SOURCE:FACTOR, starve, clock:SOURCE:SECONDS'
+FORMS = 'crash:SOURCE, slow:SOURCE:FACTOR, starve, late:SOURCE:SECONDS'
 _FORM = re.compile(r'(?P<crash>crash):(?P<crash_source>[^:]+)'
                    r'|(?P<starve>starve)'
-                   r'|(?P<other>slow|clock):(?P<source>[^:]+):(?P<amount>[^:]+)')
+                   r'|(?P<other>slow|late):(?P<source>[^:]+):(?P<amount>[^:]+)')
 
 
 @dataclass(frozen=True)
@@ -34,11 +34,11 @@ class InjectedFault:
     Args:
         kind: crash: the source falls silent. slow: its delays stretch by a factor. starve: the
             delays of all sources stretch, growing from 1 to twice as long after
-            STARVATION_DOUBLING_S. clock: its events come some seconds later (negative: earlier)
+            STARVATION_DOUBLING_S. late: its events come some seconds later (negative: earlier)
             in relation to all others; what would come after the end comes at the onset instead,
             so that only order and delays are wrong: no silence, and the usual rate.
         source: that it hits; None for starve, which hits all.
-        amount: the factor of slow, > 1; the seconds of clock, not 0; else 0.
+        amount: the factor of slow, > 1; the seconds of late, not 0; else 0.
     """
 
     kind: str
@@ -65,7 +65,7 @@ class InjectedFault:
             amount = math.nan
         if match['other'] == 'slow' and not 1.0 < amount < math.inf:
             raise ValueError(f'{text}: the factor must be a number above 1')
-        if match['other'] == 'clock' and not 0.0 < abs(amount) < math.inf:
+        if match['other'] == 'late' and not 0.0 < abs(amount) < math.inf:
             raise ValueError(f'{text}: the seconds must be a number other than 0')
         return cls(match['other'], match['source'], amount)
 
@@ -106,7 +106,7 @@ def inject(fault: InjectedFault, event_types: Sequence[EventType], stamps: np.nd
 
     Raises:
         ValueError: the fault changes nothing, because its source does nothing after the onset or
-            because its clock is shifted by more than is left of the recording.
+            because it comes later by more than is left of the recording.
     """
     if fault.source is None:
         hit = stamps >= onset

@@ -59,7 +59,7 @@ def test_starvation_stretches_all_delays_and_grows() -> None:
 @pytest.mark.parametrize('seconds', [0.2, -0.2])
 def test_a_clock_that_is_off_moves_the_source_against_the_others_and_changes_no_rate(
         seconds: float) -> None:
-    stamps, ids = faulty(f'clock:/slam:{seconds}')
+    stamps, ids = faulty(f'late:/slam:{seconds}')
     assert len(stamps) == len(STAMPS)
     phase = of(ids, stamps, 1) % 1.0
     assert np.median(phase) == pytest.approx(0.5 + seconds)
@@ -69,20 +69,20 @@ def test_a_clock_that_is_off_moves_the_source_against_the_others_and_changes_no_
 
 def test_the_recording_given_is_left_alone() -> None:
     stamps, ids = STAMPS.copy(), IDS.copy()
-    for text in ('crash:/laser', 'slow:/slam:2', 'starve', 'clock:/slam:1'):
+    for text in ('crash:/laser', 'slow:/slam:2', 'starve', 'late:/slam:1'):
         faulty(text)
     assert (stamps == STAMPS).all() and (ids == IDS).all()
 
 
 @pytest.mark.parametrize('text', [
     'crash', 'crash:', 'crash:/a:1', 'starve:/a', 'slow:/a', 'slow:/a:1', 'slow:/a:nan',
-    'slow:/a:-2', 'slow:/a:inf', 'clock:/a:0', 'clock:/a:nan', 'clock:/a:soon', 'melt:/a', ''])
+    'slow:/a:-2', 'slow:/a:inf', 'late:/a:0', 'late:/a:nan', 'late:/a:soon', 'melt:/a', ''])
 def test_what_is_no_fault_is_refused(text: str) -> None:
     with pytest.raises(ValueError):
         InjectedFault.parse(text)
 
 
-@pytest.mark.parametrize('text', ['crash:/a', 'slow:/a:2.5', 'starve', 'clock:/a:-0.5'])
+@pytest.mark.parametrize('text', ['crash:/a', 'slow:/a:2.5', 'starve', 'late:/a:-0.5'])
 def test_a_fault_is_written_as_it_is_read(text: str) -> None:
     assert str(InjectedFault.parse(text)) == text
 
@@ -102,4 +102,4 @@ def test_a_fault_that_would_change_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match='nothing would change'):
         inject(InjectedFault.parse('crash:/slam'), TYPES, STAMPS, IDS * 0, ONSET, END)
     with pytest.raises(ValueError, match='shift by less'):
-        inject(InjectedFault.parse('clock:/slam:19.5'), TYPES, STAMPS, IDS, ONSET, END)
+        inject(InjectedFault.parse('late:/slam:19.5'), TYPES, STAMPS, IDS, ONSET, END)

@@ -179,7 +179,7 @@ TEST_F(BadModelsTest, RecordingsThatCannotBeAreRefused) {
 TEST_F(BadModelsTest, WhatIsThereTwiceIsRefused) {
   EXPECT_NE(damagedModel([](TrainedModel& m) { m.watched.tracks.at(1) = m.watched.tracks.at(0); }),
             "");
-  EXPECT_NE(damagedPart("/model", rename("fewest_gaps", "several")), "");
+  EXPECT_NE(damagedPart("/model", rename("fewest_gaps", "busy_one_in")), "");
 }
 
 TEST_F(BadModelsTest, WhatAnotherProgramChangedIsRefused) {
