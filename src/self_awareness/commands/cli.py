@@ -28,7 +28,6 @@ _INTERRUPTED = 130
 _LONGEST_S = 86400.0
 _UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
             'error': UnknownEvents.ERROR}
-_MOST = 10_000
 
 
 class _Parser(argparse.ArgumentParser):
@@ -186,10 +185,10 @@ def offset(text: str) -> float:
     return float(text)
 
 
-def count(text: str) -> int:
+def count(text: str, most: int = 10_000) -> int:
     """Argument type: how many of something, 1 or more."""
-    if not text.isdecimal() or not 1 <= int(text) <= _MOST:
-        raise argparse.ArgumentTypeError(f'expected a number from 1 to {_MOST}, not {text!r}')
+    if not text.isdecimal() or not 1 <= int(text) <= most:
+        raise argparse.ArgumentTypeError(f'expected a number from 1 to {most}, not {text!r}')
     return int(text)
 
 

@@ -252,24 +252,22 @@ class ReferenceModel:
     def _steps_of_delays(self, e_i: str, e_j: str) -> List[float]:
         """Return what a delay of every bin adds to the sum [nat]."""
         bins = self.both.delays[e_i, e_j]
-        in_ns, of_period = self._least_effect
-        period = self.both.mean_gap(e_i)
-        effect = max(in_ns, of_period * period)
-        last = max(usual_bins(bins)[1], log_bin(int(period)))
+        last = max(usual_bins(bins)[1], log_bin(int(self.both.mean_gap(e_i))))
         steps = []
         for index in range(BINS):
-            low, high = lower_edge(index), lower_edge(index + 1)
-            count = float(bins.count(index))
-            for other in range(BINS - 1):
-                near = math.fsum(max(min(lower_edge(other + 1) + effect + turn, high)
-                                     - max(lower_edge(other) - effect + turn, low), 0.0)
-                                 for turn in (-period, 0.0, period))
-                if high < math.inf:
-                    count = max(count, min(near / (high - low), 1.0) * bins.count(other))
-            usual = (count + 0.5) / (len(bins) + 0.5 * BINS)
+            usual = (bins.count(index) + 0.5) / (len(bins) + 0.5 * BINS)
             another = 1.0 / (last + 1) if index <= last else 0.0
             steps.append(min(math.log(0.5 + 0.5 * another / usual), LEAST_SUM / 2))
         return steps
+
+    def _is_harmless(self, e_i: str, e_j: str, delay: float) -> bool:
+        """Return whether a delay differs by little from the usual ones."""
+        first, last = usual_bins(self.both.delays[e_i, e_j])
+        period = self.both.mean_gap(e_i)
+        in_ns, of_period = self._least_effect
+        effect = max(in_ns, of_period * period)
+        return any(lower_edge(first) - effect <= delay + turn <= lower_edge(last + 1) + effect
+                   for turn in (-period, 0.0, period))
 
     def _steps_of(self, track: Track) -> List[float]:
         """Return what a gap of every bin adds to the sum of another pace [nat]."""
@@ -298,14 +296,18 @@ class ReferenceModel:
 
     def step(self, track: Track, delay: int) -> float:
         """Return what a gap or a delay adds to the sum of its track [nat]."""
-        return self._steps[track][log_bin(delay)]
+        channel, e_j, e_i = track
+        step = self._steps[track][log_bin(delay)]
+        if channel == 'pairs' and self._is_harmless(e_i, e_j, delay):
+            return min(step, self.usual(track))
+        return step
 
     @lru_cache(maxsize=None)
-    def least_usual(self, track: Track) -> float:
-        """Return what delays add on average, at most, that are as in training [nat]."""
+    def usual(self, track: Track) -> float:
+        """Return what delays of training add on average [nat]."""
         _, e_j, e_i = track
         steps = [self._steps[track][index] for index in self.both.delays[e_i, e_j]]
-        return USUAL * math.fsum(steps) / len(steps)
+        return math.fsum(steps) / len(steps)
 
     @lru_cache(maxsize=None)
     def counts_requests(self, track: Track) -> bool:

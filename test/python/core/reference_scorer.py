@@ -5,7 +5,7 @@ from collections import defaultdict
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from reference_evidence import (BETWEEN_STALLS, LABELS, LONGEST_STALL_OF_TRAINING, MS, SECOND,
-                                SHORTEST_STALL, Event, ReferenceModel, Track, is_mode)
+                                SHORTEST_STALL, USUAL, Event, ReferenceModel, Track, is_mode)
 
 ARMING_EVENTS = 30
 MOST_FAILURES = 10
@@ -177,7 +177,7 @@ class ReferenceScorer:
             return
         step = self._model.step(track, t - before[0])
         watch.add(step)
-        watch.arming.add(step - self._model.least_usual(track))
+        watch.arming.add(step - USUAL * self._model.usual(track))
 
     def _fail(self, end: int) -> None:
         for track, watch in self._watches.items():

@@ -28,28 +28,6 @@ double upperEdge(std::size_t bin) {
   return bin + 1 < log_bins::kBins ? lowerEdge(bin + 1) : std::numeric_limits<double>::infinity();
 }
 
-/// The delays of training, by bin. For the part of a bin that is no further than `effect` [ns]
-/// from another one, it has as many as that: so small a change is no fault. A period [ns] is a
-/// circle: two that come at one moment come in any order.
-std::array<double, kDelayBins> tolerant(const DelayHistogram& delays, double effect,
-                                        double period) {
-  std::array<double, kDelayBins> counts{};
-  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
-    counts[bin] = delays[bin];
-    const double width = upperEdge(bin) - lowerEdge(bin);
-    for (std::size_t other = 0; other + 1 < delays.size() && std::isfinite(width); ++other) {
-      double near = 0;
-      for (const double turn : {-period, 0.0, period}) {
-        near += std::max(std::min(upperEdge(other) + effect + turn, upperEdge(bin)) -
-                             std::max(lowerEdge(other) - effect + turn, lowerEdge(bin)),
-                         0.0);
-      }
-      counts[bin] = std::max(counts[bin], std::min(near / width, 1.0) * delays[other]);
-    }
-  }
-  return counts;
-}
-
 using SeenDelays = std::vector<SeenDelay>;
 
 /// @param values at least one
@@ -139,22 +117,23 @@ Kind kindOf(const Reason& reason, bool scattered) {
 
 }  // namespace
 
-DelaySteps::DelaySteps(const Model& model, EventId from, EventId to) {
+DelaySteps::DelaySteps(const Model& model, EventId from, EventId to)
+    : period_(model.learned().type(from).meanGap()) {
   const Tuning& tuning = model.tuning();
   const DelayHistogram delays = model.learned().delays(from, to);
-  const double period = model.learned().type(from).meanGap();
-  const auto counts = tolerant(delays, tuning.leastEffectOnDelay(period), period);
+  const DelayHistogram::Bins usual = delays.middle(tuning.usual);
+  shortest_ = lowerEdge(usual.first) - tuning.leastEffectOnDelay(period_);
+  longest_ = upperEdge(usual.last) + tuning.leastEffectOnDelay(period_);
   // Another delay is any that is possible before the next `from`, each bin as probable.
-  const std::size_t last =
-      std::max(delays.middle(tuning.usual).last, log_bins::bin(static_cast<std::int64_t>(period)));
+  const std::size_t last = std::max(usual.last, log_bins::bin(static_cast<std::int64_t>(period_)));
   // Half a count more in every bin (Krichevsky and Trofimov 1981).
   const double all = static_cast<double>(delays.total()) + 0.5 * kDelayBins;
   for (std::size_t bin = 0; bin < by_bin_.size(); ++bin) {
     const double other = bin <= last ? 1 / static_cast<double>(last + 1) : 0;
-    by_bin_[bin] = stepOfSum(other * all / (counts[bin] + 0.5), tuning.least_sum);
-    least_usual_ +=
-        tuning.usual * by_bin_[bin] * delays[bin] / static_cast<double>(delays.total());
+    by_bin_[bin] = stepOfSum(other * all / (delays[bin] + 0.5), tuning.least_sum);
+    usual_ += by_bin_[bin] * delays[bin] / static_cast<double>(delays.total());
   }
+  least_usual_ = tuning.usual * usual_;
 }
 
 void describeDelays(const std::vector<SeenDelay>& seen, double cap, double usual, std::int64_t now,

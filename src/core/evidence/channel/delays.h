@@ -16,13 +16,28 @@ class DelaySteps {
   DelaySteps(const Model& model, EventId from, EventId to);
 
   /// What a delay [ns] adds to the sum of the track [nat].
-  double operator()(std::int64_t delay) const { return by_bin_[log_bins::bin(delay)]; }
+  double operator()(std::int64_t delay) const {
+    const double step = by_bin_[log_bins::bin(delay)];
+    // Seldom: what is unusual.
+    return step > usual_ && isHarmless(static_cast<double>(delay)) ? usual_ : step;
+  }
   /// What delays add on average [nat], at most, that are as in training.
   double leastUsual() const { return least_usual_; }
 
  private:
+  bool isHarmless(double delay) const {
+    const auto lies = [&](double shifted) { return shortest_ <= shifted && shifted <= longest_; };
+    return lies(delay) || lies(delay - period_) || lies(delay + period_);
+  }
+
   std::array<double, kDelayBins> by_bin_{};
+  double usual_ = 0;  // what a delay of training adds on average [nat]
   double least_usual_ = 0;
+  // Delays that differ too little from the usual ones [ns]. A period is a circle: two that come at
+  // one moment come in any order.
+  double shortest_ = 0;
+  double longest_ = 0;
+  double period_ = 0;
 };
 
 /// A delay that a track has seen.
