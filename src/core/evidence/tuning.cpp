@@ -25,6 +25,11 @@ const std::vector<TuningNumber>& tuningNumbers() {
        "Chance of a relation that something else speaks for.", std::nullopt},
       {"irregular", &Tuning::irregular, 0, 1e6, "",
        "Times as much as the delays that gaps must vary to be a reason.", std::nullopt},
+      {"least_chance_misses", &Tuning::least_chance_misses, 0, 1, "",
+       "Share of the answers that must be missing by chance of who neither pauses nor is asked.",
+       std::nullopt},
+      {"most_of_chance_misses", &Tuning::most_of_chance_misses, 0, 1, "",
+       "Share of the misses by chance that a true relation may have.", std::nullopt},
       {"most_misses", &Tuning::most_misses, 0, 1, "",
        "Share of the requests that may stay without an answer.", std::nullopt},
       {"rare_misses", &Tuning::rare_misses, 0, 1, "",
@@ -34,10 +39,7 @@ const std::vector<TuningNumber>& tuningNumbers() {
        "order.",
        0},
       {"least_told", &Tuning::least_told, 0, 1e6, "nat",
-       "How much the gaps of training, or else those of now, speak about another pace, and half "
-       "as "
-       "many delays.",
-       0},
+       "How much gaps or delays of training speak against others; else those of now have to.", 0},
       {"least_sum", &Tuning::least_sum, 1e-3, 1e3, "nat",
        "Least limit of a sum of what gaps, delays or values say.", std::nullopt},
       {"usual", &Tuning::usual, 0.01, 0.999, "", "Share of the delays in training that are usual.",

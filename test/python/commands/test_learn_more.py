@@ -84,8 +84,8 @@ def test_a_robot_that_stays_as_it_is_does_not_drift(model: str, capsys) -> None:
 def test_a_rate_that_falls_from_day_to_day_is_told_before_the_alarm(model: str, capsys) -> None:
     folder = _kept(model)
     period = 0.05
-    for day in range(40):
-        period *= 1.01 if day >= 12 else 1.0
+    for day in range(60):
+        period *= 1.005 if day >= 12 else 1.0
         write_log(folder / f'{day:02d}.bag', _robot(_DAY_S * (10 + day), 10 + day, period))
     age = _age(capsys, model, '--age')
     told = min(each['told_by_sample'] for each in age['components'] if each['told_by_sample'])

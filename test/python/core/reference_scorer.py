@@ -49,17 +49,18 @@ class Watch:
     """The sum of what the events of a track say."""
 
     def __init__(self, cap: float) -> None:
-        self._cap = cap
+        self.cap = cap
         self.sum = 0.0
         self.arming = Arming()
         self.behind = 0.0  # [ns]
+        self.since = 0  # of delays: the first one since the sum was 0
         self.gaps, self.lasted = 0, 0  # since the sum was 0 [ns]
         self.abnormal_since: Optional[int] = None
         self.abnormal_windows = 0
 
     def add(self, step: float) -> None:
         """Add to the sum, which stays between 0 and its cap."""
-        self.sum = min(max(self.sum + step, 0.0), self._cap)
+        self.sum = min(max(self.sum + step, 0.0), self.cap)
 
     def disarm(self) -> None:
         """Forget the sum, but not how often arming failed."""
@@ -70,7 +71,7 @@ class Watch:
 
     def is_abnormal(self) -> bool:
         """Whether the sum is above its limit."""
-        return self.arming.armed and self.sum * MOST_OF_LIMIT > self._cap
+        return self.arming.armed and self.sum * MOST_OF_LIMIT > self.cap
 
 
 class ReferenceScorer:
@@ -176,6 +177,7 @@ class ReferenceScorer:
         if self._has_waited(t):
             return
         step = self._model.step(track, t - before[0])
+        watch.since = t if watch.sum <= 0.0 else watch.since
         watch.add(step)
         watch.arming.add(step - USUAL * self._model.usual(track))
 
@@ -200,8 +202,12 @@ class ReferenceScorer:
 
     def _row(self, index: int) -> List[float]:
         end = (index + 1) * self._window
+        slow = [watch for track, watch in self._watches.items() if track[0] == 'pairs'
+                and watch.sum * MOST_OF_LIMIT <= watch.cap and end - watch.since > ACCEPT_AFTER]
         if self._has_limits:
             self._fail(end)
+        for watch in slow:
+            watch.sum = 0.0
         silence = end - self._newest if self._newest is not None else 0
         stall = silence if self._usual_silence < silence <= self._longest_stall else 0
         stalled = stall > 0 or self._has_waited(end - 2 * SECOND)

@@ -205,10 +205,14 @@ void PairsState::capAt(const std::vector<double>& limits) {
 void PairsState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
   for (std::uint32_t number = 0; number < pairs_.size(); ++number) {
     Pair& pair = pairs_[number];
-    const Sum& sum = pair.sum;
-    if (has_limits_ && arming_[number].fails(sum.value * most_of_limit_ > sum.cap, sum.value <= 0,
-                                             heard.windowEnd(), arming_numbers_)) {
+    const bool is_abnormal = pair.sum.value * most_of_limit_ > pair.sum.cap;
+    if (has_limits_ && arming_[number].fails(is_abnormal, pair.sum.value <= 0, heard.windowEnd(),
+                                             arming_numbers_)) {
       clear(number);
+    }
+    // What grows for longer than news last is a load or a phase that changes slowly.
+    if (!is_abnormal && heard.windowEnd() - pair.sum.since > arming_numbers_.accept_after) {
+      pair.sum.value = 0;
     }
     evidence[track_of_[number]] = pair.armed ? pair.sum.value : 0;
   }

@@ -220,8 +220,13 @@ Relations::Asked Relations::asked(EventId from, EventId to, std::uint64_t answer
   const double misses = missRate(gaps, answers);
   const double by_chance = missRateByChance(from, to);
   asked.reaches = reaches(from, to);
-  // Where hardly an answer is missing by chance, the gaps alone say as much.
-  asked.beyond_chance = by_chance >= tuning_.rare_misses && misses < by_chance;
+  // Timers of one rate keep one phase, and so miss each other less often than by chance; who
+  // pauses, or is asked, does not.
+  const bool pauses =
+      static_cast<double>(counts_.type(to).longestGap()) > tuning_.most_mean_gaps * meanGap(to);
+  asked.beyond_chance =
+      by_chance >= (pauses || asked.reaches ? tuning_.rare_misses : tuning_.least_chance_misses) &&
+      misses <= tuning_.most_of_chance_misses * by_chance;
   asked.divergence =
       asked.beyond_chance ? divergence(static_cast<double>(gaps), misses, by_chance) : 0;
   return asked;

@@ -348,9 +348,10 @@ Statistics pausing() {
 TEST(Relations, WhoPausesOwesAnswersThoughItSeldomMissesByChance) {
   const Statistics counts = pausing();
   const Relations relations(counts, kNoGraph, kTuning);
+  EXPECT_LT(relations.missRateByChance(kA, kB), kTuning.least_chance_misses);
   EXPECT_TRUE(relations.owed(kA, kB).watched);
   Tuning strict;
-  strict.rare_misses = 2 * relations.missRateByChance(kA, kB);
+  strict.rare_misses = strict.least_chance_misses;
   EXPECT_FALSE(Relations(counts, kNoGraph, strict).owed(kA, kB).watched);
 }
 
