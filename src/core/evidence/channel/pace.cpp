@@ -240,8 +240,7 @@ void PacesState::restart() {
 
 void PacesState::capAt(const std::vector<double>& limits) {
   for (std::size_t number = 0; number < paces_.size(); ++number) {
-    double& cap = paces_[number].sum.cap;
-    cap = capOfSum(limits[expected_.tracks()[number]], most_of_limit_, cap);
+    paces_[number].sum.capAt(limits[expected_.tracks()[number]], most_of_limit_);
   }
 }
 

@@ -197,8 +197,7 @@ void PairsState::restart() {
 void PairsState::capAt(const std::vector<double>& limits) {
   has_limits_ = true;
   for (std::size_t number = 0; number < pairs_.size(); ++number) {
-    double& cap = pairs_[number].sum.cap;
-    cap = capOfSum(limits[track_of_[number]], most_of_limit_, cap);
+    pairs_[number].sum.capAt(limits[track_of_[number]], most_of_limit_);
   }
 }
 

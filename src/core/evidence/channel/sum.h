@@ -47,6 +47,8 @@ struct Sum {
     value = std::clamp(value + step, 0.0, cap);
     return begins;
   }
+  /// Ends it a little above a limit (capOfSum()).
+  void capAt(double limit, double most_of_limit) { cap = capOfSum(limit, most_of_limit, cap); }
 };
 
 }  // namespace self_awareness::core::evidence

@@ -155,9 +155,8 @@ class SharesState : public ChannelState {
   }
   void capAt(const std::vector<double>& limits) override {
     for (std::size_t number = 0; number < values_.size(); ++number) {
-      double& cap = values_[number].sum.cap;
-      cap = capOfSum(limits[expected_.tracks()[number]], expected_.model().tuning().most_of_limit,
-                     cap);
+      values_[number].sum.capAt(limits[expected_.tracks()[number]],
+                                expected_.model().tuning().most_of_limit);
     }
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
