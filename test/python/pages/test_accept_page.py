@@ -52,7 +52,7 @@ def test_all_that_somebody_wants_is_done_as_the_page_says(reader: Reader) -> Non
         done, message = answer(reader, call)
         assert done and 'normal from now on' in message, call
     done, message = answer(reader, ask_back)
-    assert not done and '/rostopic_12 on /cmd_vel, /camera (slow), /joystick' in message
+    assert not done and '/rostopic_12 on /cmd_vel, /camera (slow) and /joystick' in message
     done, message = answer(reader, undo)
     assert done and 'judged again' in message
     *mutes, told_again = calls('mute')
