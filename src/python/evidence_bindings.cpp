@@ -94,15 +94,6 @@ std::shared_ptr<evidence::Model> ofAllPairs(const ros1::TrainedModel& trained,
                                                         : Learned::kSecond);
 }
 
-/// Variance of the number of events of a type in kRateSpan.
-double rateVariance(const evidence::Model& model, core::EventId id) {
-  const evidence::Statistics& counts = model.learned();
-  const auto windows = static_cast<double>(std::max<std::uint64_t>(counts.rateWindows(), 1));
-  const evidence::Statistics::Type& type = counts.type(id);
-  const double mean = static_cast<double>(type.rate_sum) / windows;
-  return std::max(static_cast<double>(type.rate_squares) / windows - mean * mean, 0.0);
-}
-
 /// Delays of a pair of event types: shortest delay [ns] and count by bin.
 std::vector<std::pair<std::int64_t, std::uint32_t>> delaysOf(const evidence::Model& model,
                                                              core::EventId from,
@@ -152,8 +143,18 @@ void bindEvidence(py::module& m) {
             return self.learned().type(id).events;
           },
           py::arg("id"))
-      .def("rate_variance", &rateVariance, py::arg("id"),
-           "variance of the number of events in RATE_SPAN")
+      .def(
+          "rate_variance",
+          [](const evidence::Model& self, core::EventId id) {
+            return self.learned().rateVariance(id);
+          },
+          py::arg("id"), "variance of the number of events in RATE_SPAN")
+      .def(
+          "dispersion",
+          [](const evidence::Model& self, core::EventId id) {
+            return self.learned().dispersion(id);
+          },
+          py::arg("id"), "how many events of a type say as much as one that is independent")
       .def(
           "delay_count",
           [](const evidence::Model& self, core::EventId from, core::EventId to) {

@@ -21,9 +21,9 @@ from typing import (AbstractSet, Any, Callable, Dict, Hashable, Iterable, List, 
 
 import numpy as np
 
-from self_awareness import (DEFAULT_WINDOW, Alarm, DetectorParameters, EventType, EvidenceModel,
-                            Learner, Occurrence, PaperModel, TrainedModel, Tuning, Verdicts,
-                            fold_incidents, judge_by_evidence)
+from self_awareness import (DEFAULT_WINDOW, Alarm, Coverage, DetectorParameters, EventType,
+                            EvidenceModel, Learner, Occurrence, PaperModel, TrainedModel, Tuning,
+                            Verdicts, fold_incidents, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
 from self_awareness.stamps import SECOND_NS
@@ -149,7 +149,11 @@ class Evidence:
     @property
     def watched(self) -> Set[str]:
         """See System."""
-        return {each.component for each in self._trained.coverage() if each.is_watched}
+        return {each.component for each in self.coverage() if each.is_watched}
+
+    def coverage(self) -> List[Coverage]:
+        """Return what is found of each component."""
+        return self._trained.coverage()
 
     def verdicts(self, recording: WindowedEvents) -> Verdicts:
         """Return what the detector says of a recording, suspicions included."""

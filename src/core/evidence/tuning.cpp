@@ -23,8 +23,6 @@ const std::vector<TuningNumber>& tuningNumbers() {
        std::nullopt},
       {"chance_of_one", &Tuning::chance_of_one, 1e-9, 1, "",
        "Chance of a relation that something else speaks for.", std::nullopt},
-      {"irregular", &Tuning::irregular, 0, 1e6, "",
-       "Times as much as the delays that gaps must vary to be a reason.", std::nullopt},
       {"least_chance_misses", &Tuning::least_chance_misses, 0, 1, "",
        "Share of the answers that must be missing by chance of who neither pauses nor is asked.",
        std::nullopt},

@@ -240,10 +240,7 @@ def _missing_by_chance(here: Side, there: Side, kind: Kind, common: float) -> fl
     series count as fewer, by the variance of their counts (index of dispersion).
     """
     index = here.ids[kind]
-    events = here.all.events(index)
-    mean = events / here.duration * _SPAN_S if here.duration > 0 else 0.0
-    dispersion = here.all.rate_variance(index) / mean if mean > 0 else 1.0
-    independent = events / max(1.0, common * dispersion)
+    independent = here.all.events(index) / max(1.0, common * here.all.dispersion(index))
     return (here.duration / max(here.duration + there.duration, 1e-9)) ** independent
 
 

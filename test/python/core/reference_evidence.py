@@ -100,9 +100,9 @@ def usual_bins(bins: Sequence[int]) -> Tuple[int, int]:
             bin_below(bins, (1 + USUAL) / 2 * len(bins)))
 
 
-def log_probabilities(bins: Sequence[int]) -> List[float]:
-    """Return log P of every bin, with one more count in each."""
-    return [math.log((bins.count(index) + 1) / (len(bins) + BINS)) for index in range(BINS)]
+def probabilities(bins: Sequence[int]) -> List[float]:
+    """Return P of every bin, with half a count more in each."""
+    return [(bins.count(index) + 0.5) / (len(bins) + 0.5 * BINS) for index in range(BINS)]
 
 
 def stalls_of(pieces: Sequence[Sequence[Event]]) -> List[Dict[int, int]]:
@@ -253,12 +253,9 @@ class ReferenceModel:
         """Return what a delay of every bin adds to the sum [nat]."""
         bins = self.both.delays[e_i, e_j]
         last = max(usual_bins(bins)[1], log_bin(int(self.both.mean_gap(e_i))))
-        steps = []
-        for index in range(BINS):
-            usual = (bins.count(index) + 0.5) / (len(bins) + 0.5 * BINS)
-            another = 1.0 / (last + 1) if index <= last else 0.0
-            steps.append(min(math.log(0.5 + 0.5 * another / usual), LEAST_SUM / 2))
-        return steps
+        return [min(math.log(0.5 + 0.5 / (last + 1) / usual if index <= last else 0.5),
+                    LEAST_SUM / 2)
+                for index, usual in enumerate(probabilities(bins))]
 
     def _is_harmless(self, e_i: str, e_j: str, delay: float) -> bool:
         """Return whether a delay differs by little from the usual ones."""
@@ -272,8 +269,7 @@ class ReferenceModel:
     def _steps_of(self, track: Track) -> List[float]:
         """Return what a gap of every bin adds to the sum of another pace [nat]."""
         channel, kind, _ = track
-        gaps = self.both.delays[kind, kind]
-        found = [(gaps.count(index) + 1) / (len(gaps) + BINS) for index in range(BINS)]
+        found = probabilities(self.both.delays[kind, kind])
 
         def moved(by: int, shares: Sequence[float]) -> List[float]:
             to = [min(max(index + by, 0), BINS - 1) for index in range(BINS)]

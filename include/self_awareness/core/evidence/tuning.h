@@ -24,7 +24,6 @@ struct Tuning {
   double least_gain_left = 0.7;
   double chance_of_any = 0.1;
   double chance_of_one = 0.05;
-  double irregular = 2;
   double least_chance_misses = 0.2;
   double most_of_chance_misses = 0.75;
   double most_misses = 0.5;

@@ -28,8 +28,12 @@ struct Pauses {
 
 Pauses::Pauses(const Statistics& counts, EventId id, const Tuning& tuning)
     : longer_than(std::max(tuning.most_mean_gaps * counts.type(id).meanGap(),
-                           static_cast<double>(kRateSpan))) {
-  for (const std::int64_t gap : counts.type(id).longest_gaps) {
+                           1e9 * tuning.least_lateness)) {
+  const std::vector<std::int64_t>& longest = counts.type(id).longest_gaps;
+  if (longest.size() == Statistics::kLongestGaps) {  // there may be more of the shortest one
+    longer_than = std::max(longer_than, static_cast<double>(longest.back()));
+  }
+  for (const std::int64_t gap : longest) {
     if (static_cast<double>(gap) > longer_than) {
       number += 1;
       sum += static_cast<double>(gap);
@@ -45,8 +49,9 @@ Pauses::Pauses(const Statistics& counts, EventId id, const Tuning& tuning)
   starts = numberOfStarts(spans, toNanoseconds(tuning.start_time));
 }
 
-/// How much of the pauses of `id` is not a pause of `other`: its events in them, as the ages of
-/// `id` at them tell, and one more in each, of those that there would be by chance.
+/// How much of the pauses of `id`, but for their begin, is not a pause of `other`: its events in
+/// them, as the ages of `id` at them tell, and one more in each, of those that there would be by
+/// chance.
 double shareGoneOn(const Statistics& counts, EventId id, const Pauses& pauses, EventId other) {
   const DelayHistogram ages = counts.delays(id, other);
   double events = 0;
@@ -56,10 +61,8 @@ double shareGoneOn(const Statistics& counts, EventId id, const Pauses& pauses, E
       break;
     }
   }
-  // What it says in the begin of a pause is not counted.
-  return ((events + pauses.number) * counts.type(other).meanGap() +
-          pauses.number * pauses.longer_than) /
-         pauses.sum;
+  return (events + pauses.number) * counts.type(other).meanGap() /
+         (pauses.sum - pauses.number * pauses.longer_than);
 }
 
 class ExpectedCompany : public Expectation {
@@ -83,7 +86,7 @@ class ExpectedCompany : public Expectation {
   double limit(std::size_t track, double largest, double most) const override {
     const Track& watched = model_.tracks()[track];
     const double silence =
-        model_.tuning().owed_of_silence * static_cast<double>(model_.longestGap(watched.to));
+        model_.tuning().owed_of_silence * static_cast<double>(model_.longestSilence(watched.to));
     const double gap =
         isMode(watched.from) ? static_cast<double>(ModeTime::kTick) : model_.meanGap(watched.from);
     // Else it says no more than the silence by itself.

@@ -126,11 +126,10 @@ DelaySteps::DelaySteps(const Model& model, EventId from, EventId to)
   longest_ = upperEdge(usual.last) + tuning.leastEffectOnDelay(period_);
   // Another delay is any that is possible before the next `from`, each bin as probable.
   const std::size_t last = std::max(usual.last, log_bins::bin(static_cast<std::int64_t>(period_)));
-  // Half a count more in every bin (Krichevsky and Trofimov 1981).
-  const double all = static_cast<double>(delays.total()) + 0.5 * kDelayBins;
+  const ByBin all = delays.probabilities();
   for (std::size_t bin = 0; bin < by_bin_.size(); ++bin) {
     const double other = bin <= last ? 1 / static_cast<double>(last + 1) : 0;
-    by_bin_[bin] = stepOfSum(other * all / (delays[bin] + 0.5), tuning.least_sum);
+    by_bin_[bin] = stepOfSum(other / all[bin], tuning.least_sum);
     usual_ += by_bin_[bin] * delays[bin] / static_cast<double>(delays.total());
   }
   least_usual_ = tuning.usual * usual_;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -30,7 +29,7 @@ class DelaySteps {
     return lies(delay) || lies(delay - period_) || lies(delay + period_);
   }
 
-  std::array<double, kDelayBins> by_bin_{};
+  ByBin by_bin_{};
   double usual_ = 0;  // what a delay of training adds on average [nat]
   double least_usual_ = 0;
   // Delays that differ too little from the usual ones [ns]. A period is a circle: two that come at

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/evidence/channel/channels.h"
+#include "core/evidence/count/heads_and_tails.h"
 #include "core/evidence/count/log_bins.h"
 
 namespace self_awareness::core::evidence {
@@ -85,6 +86,10 @@ std::int64_t Model::longestSilence() const {
     longest = std::max(longest, recording.longest_silence);
   }
   return longest;
+}
+
+std::int64_t Model::longestSilence(EventId id) const {
+  return std::max(longestGap(id), HeadsAndTails(statistics_, id, tuning_).longest());
 }
 
 std::int64_t Model::longestStall() const {

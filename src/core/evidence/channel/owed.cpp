@@ -40,7 +40,7 @@ class ExpectedAnswers : public Expectation {
   double limit(std::size_t track, double largest, double most) const override {
     const EventId to = model_.tracks()[track].to;
     return timeUntil(track, largest) <
-                   model_.tuning().owed_of_silence * static_cast<double>(model_.longestGap(to))
+                   model_.tuning().owed_of_silence * static_cast<double>(model_.longestSilence(to))
                ? most
                : std::numeric_limits<double>::quiet_NaN();
   }

@@ -1,7 +1,6 @@
 #include "core/evidence/channel/pace.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -28,8 +27,6 @@ constexpr std::ptrdiff_t kMostBins = 48;
 // Who comes as often as usual since the sum began, and has other gaps, has no other pace.
 constexpr double kSameRate = 0.1;
 
-using ByBin = std::array<double, kDelayBins>;
-
 /// The same gaps, longer by so many bins; what would leave the bins stays in the outermost one.
 ByBin longer(const ByBin& shares, std::ptrdiff_t bins) {
   constexpr std::ptrdiff_t kLast = kDelayBins - 1;
@@ -43,10 +40,7 @@ ByBin longer(const ByBin& shares, std::ptrdiff_t bins) {
 
 /// What each gap adds to the sum [nat], by bin: half of them are of another pace.
 ByBin stepsOf(const DelayHistogram& gaps, Pace::Side side, const Tuning& tuning) {
-  const LogProbabilities logs = gaps.logProbabilities();
-  ByBin usual{};
-  std::transform(logs.begin(), logs.end(), usual.begin(),
-                 [](double log) { return std::exp(log); });
+  ByBin usual = gaps.probabilities();
   // What is a bin longer or shorter is no other pace.
   const ByBin a_bin_longer = longer(usual, 1);
   const ByBin a_bin_shorter = longer(usual, -1);
@@ -185,9 +179,10 @@ ExpectedPaces::ExpectedPaces(const Model& model, std::vector<std::size_t> tracks
     const EventId id = typeOf(number);
     const DelayHistogram gaps = model.learned().delays(id, id);
     steps_.push_back(stepsOf(gaps, side, model.tuning()));
-    // What training does not tell, the gaps of now have to, also where messages come in clumps.
+    // What training does not tell, the gaps of now have to. What came in clumps told once.
     const Tuning& tuning = model.tuning();
-    const bool is_told = toldBy(gaps, steps_.back()) >= tuning.least_told;
+    const bool is_told =
+        toldBy(gaps, steps_.back()) >= tuning.least_told * model.learned().dispersion(id);
     least_.push_back(is_told ? tuning.least_sum : tuning.least_told);
     mean_gaps_.push_back(model.meanGap(id));
     usual_gaps_.push_back(side == Pace::Side::kSlower ? model.usualDelay(id, id, 0.5)

@@ -10,14 +10,20 @@ namespace self_awareness::core::evidence {
 namespace {
 
 template <typename Counts>
-LogProbabilities logsOf(const Counts& counts) {
-  const double total =
-      static_cast<double>(counts.size()) + asArray(counts).template cast<double>().sum();
-  LogProbabilities logs{};
-  std::transform(counts.begin(), counts.end(), logs.begin(), [total](std::uint64_t count) {
-    return std::log((static_cast<double>(count) + 1) / total);
+ByBin probabilitiesOf(const Counts& counts) {
+  const double total = kPriorCount * static_cast<double>(counts.size()) +
+                       asArray(counts).template cast<double>().sum();
+  ByBin found{};
+  std::transform(counts.begin(), counts.end(), found.begin(), [total](std::uint64_t count) {
+    return (static_cast<double>(count) + kPriorCount) / total;
   });
-  return logs;
+  return found;
+}
+
+ByBin logsOf(ByBin found) {
+  std::transform(found.begin(), found.end(), found.begin(),
+                 [](double each) { return std::log(each); });
+  return found;
 }
 
 }  // namespace
@@ -55,12 +61,16 @@ double DelayHistogram::quantile(double share, double longest) const {
   return 0;
 }
 
-LogProbabilities DelayHistogram::logProbabilities() const {
-  return logsOf(*this);
+ByBin DelayHistogram::probabilities() const {
+  return probabilitiesOf(*this);
 }
 
-LogProbabilities logProbabilities(const SumOfDelays& counts) {
-  return logsOf(counts);
+ByBin logProbabilities(const DelayHistogram& counts) {
+  return logsOf(counts.probabilities());
+}
+
+ByBin logProbabilities(const SumOfDelays& counts) {
+  return logsOf(probabilitiesOf(counts));
 }
 
 }  // namespace self_awareness::core::evidence

@@ -144,6 +144,17 @@ void Statistics::merge(const Statistics& other) {
   }
 }
 
+double Statistics::rateVariance(EventId id) const {
+  const auto windows = static_cast<double>(std::max<std::uint64_t>(rate_windows_, 1));
+  const double mean = static_cast<double>(type(id).rate_sum) / windows;
+  return std::max(static_cast<double>(type(id).rate_squares) / windows - mean * mean, 0.0);
+}
+
+double Statistics::dispersion(EventId id) const {
+  const auto sum = static_cast<double>(std::max<std::uint64_t>(type(id).rate_sum, 1));
+  return std::max(rateVariance(id) * static_cast<double>(rate_windows_) / sum, 1.0);
+}
+
 void Statistics::addRecording(Recording recording) {
   // The same recording looks the same, whatever event types other ones had.
   std::size_t seen = recording.events.size();

@@ -27,8 +27,8 @@ MisleadingPairs::MisleadingPairs(const Model& model)
     Pair pair;
     pair.from = from;
     pair.track = track;
-    const LogProbabilities of_pair = training.delays(from, to).logProbabilities();
-    const LogProbabilities of_any = logProbabilities(to_any[from]);
+    const ByBin of_pair = logProbabilities(training.delays(from, to));
+    const ByBin of_any = logProbabilities(to_any[from]);
     asArray(pair.log_ratios) = asArray(of_pair) - asArray(of_any);
     pair.usual_gain = gain(from, to);
     pairs_[to].push_back(pair);

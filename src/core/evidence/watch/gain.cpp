@@ -28,11 +28,11 @@ double InformationGain::operator()(EventId from, EventId to) const {
   }
   const DelayHistogram measured = measured_on_.delays(*id_there_[from], *id_there_[to]);
   const DelayHistogram learned = learned_from_.delays(from, to);
-  const double total = static_cast<double>(learned_number) + log_bins::kBins;
+  const double total = static_cast<double>(learned_number) + kPriorCount * log_bins::kBins;
   double sum = 0;
   for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
     if (measured[bin] > 0) {  // logarithms take most of the time
-      sum += measured[bin] * (std::log((learned[bin] + 1.0) / total) - any_[from][bin]);
+      sum += measured[bin] * (std::log((learned[bin] + kPriorCount) / total) - any_[from][bin]);
     }
   }
   return sum / number;

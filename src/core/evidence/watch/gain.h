@@ -33,7 +33,7 @@ class InformationGain {
   const Statistics& measured_on_;
   double fewest_delays_;
   std::vector<std::optional<EventId>> id_there_;  // in measured_on_, by id
-  std::vector<LogProbabilities> any_;             // of the delays since e_i at any event, by i
+  std::vector<ByBin> any_;                        // of the delays since e_i at any event, by i
 };
 
 /// Gains of all pairs: the mean of learning from either half (docs/method.md, section 3.5).

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "core/evidence/count/heads_and_tails.h"
 #include "core/evidence/count/log_bins.h"
 
 namespace self_awareness::core::evidence {
@@ -29,13 +30,15 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph, const T
       graph_(graph),
       tuning_(tuning),
       broadcasts_(kBroadcasts),
-      gaps_(counts.size()) {
+      gaps_(counts.size()),
+      cut_off_(counts.size(), 0) {
   double types = 0;
   for (EventId id = 0; id < counts.size(); ++id) {
     const Statistics::Type& type = counts.type(id);
     const bool is_judged =
         static_cast<double>(type.gaps) >= tuning.fewest_gaps && !counts.vocabulary().tellsMode(id);
     types += is_judged ? 1 : 0;
+    cut_off_[id] = HeadsAndTails(counts, id, tuning).all();
     const DelayHistogram& delays = counts.delays(id, id);
     const auto longest = static_cast<double>(type.longestGap());
     for (std::size_t bin = 0; bin < delays.size(); ++bin) {
@@ -101,7 +104,7 @@ bool Relations::isIrregular(EventId from, EventId to) const {
                   : std::max(edge(bins.last) - edge(bins.first + 1), 0.0);
   };
   const double delays = range(from, to, true);
-  return std::min(range(from, from, false), range(to, to, false)) > tuning_.irregular * delays;
+  return std::min(range(from, from, false), range(to, to, false)) > delays;
 }
 
 double Relations::period(EventId from, EventId to) const {
@@ -202,7 +205,9 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
 }
 
 double Relations::missRateByChance(EventId from, EventId to) const {
-  if (meanGap(to) <= 0) {
+  const double silent = cut_off_[to];
+  const double time = static_cast<double>(counts_.type(to).gap_sum) + silent;  // [ns]
+  if (time <= 0) {
     return 0;
   }
   double misses = 0;
@@ -211,7 +216,7 @@ double Relations::missRateByChance(EventId from, EventId to) const {
       misses += asked.share * gap.share * std::max(gap.length - asked.length, 0.0);
     }
   }
-  return std::min(misses / meanGap(to), 1.0);
+  return std::min((misses * static_cast<double>(counts_.type(to).gaps) + silent) / time, 1.0);
 }
 
 Relations::Asked Relations::asked(EventId from, EventId to, std::uint64_t answers) const {
@@ -222,8 +227,8 @@ Relations::Asked Relations::asked(EventId from, EventId to, std::uint64_t answer
   asked.reaches = reaches(from, to);
   // Timers of one rate keep one phase, and so miss each other less often than by chance; who
   // pauses, or is asked, does not.
-  const bool pauses =
-      static_cast<double>(counts_.type(to).longestGap()) > tuning_.most_mean_gaps * meanGap(to);
+  const bool pauses = std::max(static_cast<double>(counts_.type(to).longestGap()), cut_off_[to]) >
+                      tuning_.most_mean_gaps * meanGap(to);
   asked.beyond_chance =
       by_chance >= (pauses || asked.reaches ? tuning_.rare_misses : tuning_.least_chance_misses) &&
       misses <= tuning_.most_of_chance_misses * by_chance;

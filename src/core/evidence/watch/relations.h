@@ -75,6 +75,7 @@ class Relations {
   std::set<std::string> broadcasts_;    // topics that everybody hears
   double looked_at_ = 1;                // number of pairs
   std::vector<std::vector<Gap>> gaps_;  // by id
+  std::vector<double> cut_off_;         // heads and tails that count [ns], by id
 };
 
 /// Share of the gaps of an event type in which another did not answer, above 0 and below 1: p of

@@ -66,6 +66,22 @@ TEST_F(CompanyTest, WhoPausesTogetherIsInCompany) {
   EXPECT_FALSE(watches(kC, kA)) << "it does not pause";
 }
 
+TEST_F(CompanyTest, PausesOfASecondAreCompanyToo) {
+  const auto start = [](std::int64_t begin) {
+    Events events = timer(kC, 0, 10 * kSession, 500 * kMillisecond);
+    for (std::int64_t stamp = 0; stamp < 10 * kSession; stamp += kSession) {
+      const std::int64_t end = stamp + kSession - kSecond;
+      events = together({events, timer(kA, stamp + 10 * kMillisecond, end, kFast),
+                         timer(kB, stamp, end, kSlow)});
+    }
+    return countsOf({later(events, begin)});
+  };
+  learn(start(kStart), start(2 * kStart));
+  EXPECT_TRUE(watches(kA, kB));
+  EXPECT_TRUE(watches(kB, kA));
+  EXPECT_FALSE(watches(kA, kC));
+}
+
 TEST_F(CompanyTest, PausesOfOneStartMayBeChance) {
   learn(countsOf({modes(kStart)}), countsOf({modes(kStart + kSecond)}));
   EXPECT_FALSE(watches(kA, kB));

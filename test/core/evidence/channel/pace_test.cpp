@@ -225,5 +225,23 @@ TEST(PaceOfFewGaps, NeedsMoreWhereTheyDoNotTellItFromAnotherOne) {
   EXPECT_TRUE(isTold(5000, false));
 }
 
+TEST(PaceOfClumps, IsToldByTheirNumber) {
+  const auto least = [](int clumps) {  // of ten messages each
+    const std::int64_t end = clumps * 10 * kSecond;
+    const auto start = [&](unsigned seed) {
+      Events events;
+      for (const Event& first : irregular(kA, 0, end, 10 * kSecond, seed)) {
+        for (int i = 0; i < 10; ++i) {
+          events.push_back({first.stamp + i * kShort, kA});
+        }
+      }
+      return together({events, timer(kC, 0, end, kPeriod)});
+    };
+    return leastOf(Model(watch(countsOf({start(1)}), countsOf({later(start(2))}))), kFaster, kA);
+  };
+  EXPECT_EQ(least(30), Tuning{}.least_told) << "600 gaps, but 60 clumps";
+  EXPECT_EQ(least(600), Tuning{}.least_sum);
+}
+
 }  // namespace
 }  // namespace self_awareness::core::evidence

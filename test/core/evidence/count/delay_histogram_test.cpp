@@ -19,15 +19,16 @@ DelayHistogram counts() {
   return counts;
 }
 
-TEST(DelayHistogram, ItsProbabilitiesHaveOneMoreCountInEveryBin) {
-  const LogProbabilities logs = counts().logProbabilities();
-  EXPECT_DOUBLE_EQ(logs[0], std::log(0.01));
-  EXPECT_DOUBLE_EQ(logs[1], std::log(0.11));
-  EXPECT_DOUBLE_EQ(logs[2], std::log(0.41));
+TEST(DelayHistogram, ItsProbabilitiesHaveHalfACountMoreInEveryBin) {
+  const ByBin found = counts().probabilities();
+  EXPECT_DOUBLE_EQ(found[0], 0.5 / 75);
+  EXPECT_DOUBLE_EQ(found[1], 10.5 / 75);
+  EXPECT_DOUBLE_EQ(found[2], 40.5 / 75);
   SumOfDelays sum{};
   sum[1] = 10;
   sum[2] = 40;
-  EXPECT_EQ(logProbabilities(sum), logs);
+  EXPECT_DOUBLE_EQ(logProbabilities(sum)[2], std::log(40.5 / 75));
+  EXPECT_EQ(logProbabilities(sum), logProbabilities(counts()));
 }
 
 TEST(DelayHistogram, ItsTotalNeedsMoreBitsThanACount) {

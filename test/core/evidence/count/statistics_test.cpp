@@ -83,6 +83,21 @@ TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
   EXPECT_EQ(counts.type(kA).rate_squares, 19U);
   EXPECT_EQ(counts.type(kB).rate_sum, 2U);
   EXPECT_EQ(counts.type(kB).rate_squares, 2U);
+  EXPECT_NEAR(counts.rateVariance(kA), 19.0 / 3 - 7.0 / 3 * 7 / 3, 1e-12);
+  EXPECT_EQ(counts.dispersion(kA), 1) << "a timer varies less than chance";
+}
+
+TEST(Statistics, TenAtOnceSayAsMuchAsOne) {
+  Events clumps;
+  for (const Event& first : irregular(kA, 0, 10000 * kSecond, 20 * kSecond, 1)) {
+    for (int i = 0; i < 10; ++i) {
+      clumps.push_back({first.stamp + i * kMillisecond, kA});
+    }
+  }
+  const Statistics counts =
+      countsOf({together({clumps, irregular(kB, 0, 10000 * kSecond, kSecond, 2)})});
+  EXPECT_NEAR(counts.dispersion(kA), 10, 1.5);
+  EXPECT_LT(counts.dispersion(kB), 1.2);
 }
 
 TEST(EvidenceTrainer, SaysWhatEveryRecordingShowed) {

@@ -328,6 +328,20 @@ TEST(Relations, ATimersOwnPeriodSaysAsMuchAsWhatItAnswersTo) {
   EXPECT_FALSE(isOwed(counts, graph));
 }
 
+TEST(Relations, WhoComesOnlyInTheMiddleOfRecordingsIsSilentBeforeAndAfter) {
+  // Both are regular while they come: no gap of B is longer than one of A.
+  const auto isOwedFrom = [](std::int64_t begin) {
+    const Events asked = timer(kA, begin, 400 * kSecond - begin, kPeriod);
+    return isOwed(countsOf({together({asked, answers(kB, asked, 20 * kMillisecond),
+                                      timer(kC, 0, 400 * kSecond, kSecond)})},
+                           3),
+                  connected("/x"));
+  };
+  EXPECT_TRUE(isOwedFrom(100 * kSecond));
+  EXPECT_FALSE(isOwedFrom(0));
+  EXPECT_FALSE(isOwedFrom(10 * kSecond)) << "it started late, and may always come";
+}
+
 // A tracker at 10 Hz that pauses with what it answers to, and leaves out one in a hundred.
 Statistics pausing() {
   Events asked;

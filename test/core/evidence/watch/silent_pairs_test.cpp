@@ -142,8 +142,8 @@ TEST(InformationGain, IsTheMeanLogRatioOnTheOtherHalf) {
   Statistics measured = countsOf({}, 2);
   measured.setPartners(kB, after(kA, {{10, 30}, {20, 20}}));
   const InformationGain gain(learned, measured, kFewestDelays);
-  // P: 51 and 1 of 100; Q: 51 and 101 of 200.
-  EXPECT_NEAR(gain(kA, kB), (30 * std::log(2.0) + 20 * std::log(2.0 / 101)) / 50, 1e-12);
+  // P: 50.5 and 0.5 of 75; Q: 50.5 and 100.5 of 175.
+  EXPECT_NEAR(gain(kA, kB), std::log(175.0 / 75) + 20 * std::log(0.5 / 100.5) / 50, 1e-12);
   EXPECT_EQ(gain(kA, kA), 0);  // not measured
   EXPECT_EQ(gain(kB, kA), 0);  // not learned
   measured.setPartners(kB, after(kA, {{10, 30}, {20, 19}}));

@@ -10,8 +10,11 @@ namespace self_awareness::core::evidence {
 /// shorter and one for all longer delays (docs/method.md, section 3.1).
 constexpr std::size_t kDelayBins = 50;
 
-/// log P by bin [nat].
-using LogProbabilities = std::array<double, kDelayBins>;
+/// What every bin has before a delay is counted (Krichevsky and Trofimov 1981).
+constexpr double kPriorCount = 0.5;
+
+/// A number for each bin.
+using ByBin = std::array<double, kDelayBins>;
 
 /// Counts of delays, by bin.
 struct DelayHistogram : std::array<std::uint32_t, kDelayBins> {
@@ -29,13 +32,14 @@ struct DelayHistogram : std::array<std::uint32_t, kDelayBins> {
   /// Delay [ns] that a share (0 to 1) of the delays does not exceed: an estimate within its bin.
   /// @param longest delay of all, as far as it is known [ns]
   double quantile(double share, double longest) const;
-  /// Logarithms of the probabilities of delays, with one more count in every bin (Laplace).
-  LogProbabilities logProbabilities() const;
+  /// Probabilities of delays: the shares of the counts, with kPriorCount more in every bin.
+  ByBin probabilities() const;
 };
 
 /// Sums of such counts, which may need more bits.
 using SumOfDelays = std::array<std::uint64_t, kDelayBins>;
-/// The same for sums of counts.
-LogProbabilities logProbabilities(const SumOfDelays& counts);
+/// Natural logarithms of such probabilities.
+ByBin logProbabilities(const DelayHistogram& counts);
+ByBin logProbabilities(const SumOfDelays& counts);
 
 }  // namespace self_awareness::core::evidence

@@ -121,6 +121,11 @@ class Statistics {
   /// Windows in which rates were counted, the same for all types.
   std::uint64_t rateWindows() const { return rate_windows_; }
   void addRateWindows(std::uint64_t windows) { rate_windows_ += windows; }
+  /// Variance of the number of events of a type in kRateSpan.
+  double rateVariance(EventId id) const;
+  /// How many events of a type say as much as one that is independent of others, 1 at least: they
+  /// come in clumps (index of dispersion of their number in kRateSpan, Cox and Lewis 1966).
+  double dispersion(EventId id) const;
   /// Recordings that were counted, in the order of their start.
   const std::vector<Recording>& recordings() const { return recordings_; }
   void addRecording(Recording recording);

@@ -1,4 +1,4 @@
-#include "core/evidence/limits/heads_and_tails.h"
+#include "core/evidence/count/heads_and_tails.h"
 
 #include <algorithm>
 
@@ -47,6 +47,9 @@ HeadsAndTails::HeadsAndTails(const Statistics& counts, EventId id, const Tuning&
   const double usual = 2 * heard_in.number * tuning.regular * type.meanGap();
   all_ = std::max(heard_in.length - static_cast<double>(type.gap_sum) - usual, 0.0);
   tail_ = static_cast<std::int64_t>((all_ - heard_in.heads) / heard_in.number);
+  for (const Statistics::Recording& recording : counts.recordings()) {
+    longest_ = std::max(longest_, longestIn(recording));
+  }
 }
 
 std::int64_t HeadsAndTails::longestIn(const Statistics::Recording& recording) const {

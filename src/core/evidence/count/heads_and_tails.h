@@ -27,8 +27,10 @@ class HeadsAndTails {
 
   /// Whether they count: the type is often silent.
   bool count() const { return count_; }
-  /// Length of all of them [ns]; 0 where they do not count.
+  /// Length of all of them in recordings that hear the type [ns]; 0 where they do not count.
   double all() const { return all_; }
+  /// The longest one [ns], as longestIn().
+  std::int64_t longest() const { return longest_; }
   /// The longest of a recording [ns]: the time until the first event of the type, or, as only
   /// their sum is known, the mean of those since the last one; all of it where the type did not
   /// come. 0 where they do not count.
@@ -39,6 +41,7 @@ class HeadsAndTails {
   bool count_;
   double all_ = 0;         // [ns]
   std::int64_t tail_ = 0;  // mean [ns]
+  std::int64_t longest_ = 0;
 };
 
 }  // namespace self_awareness::core::evidence
