@@ -1,6 +1,7 @@
 """What is written of rows and measurements: pages, with which method, numbers of the README."""
 from __future__ import annotations
 
+import csv
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -104,6 +105,22 @@ def test_the_numbers_of_the_readme_are_of_this_method() -> None:
     """They come from two of the parts of their page."""
     old = [each.command for each in pages.find(DOCS) if each.page == PAGE and each.is_old]
     assert [command for command in old if command.split()[3] in ('simulated', 'families')] == []
+
+
+def test_more_knowledge_makes_no_robot_louder() -> None:
+    """More starts, or the graph, and more false alarms than chance explains, is a rule too many."""
+    with open(DOCS / 'evaluation' / 'families.csv', encoding='utf-8') as file:
+        rates = {(each['of'], each['learning'], each['system']):
+                 (float(each['per_hour_low']), float(each['per_hour_high']))
+                 for each in csv.DictReader(file) if each['system'].startswith('evidence')}
+    few, many = sorted({learning for _, learning, _ in rates})
+    pairs = [((of, few, system), (of, many, system))
+             for of, learning, system in rates if learning == few]
+    pairs += [((of, learning, system), (of, learning, 'evidence'))
+              for of, learning, system in rates if system == 'evidence_no_graph']
+    assert len(pairs) > 100
+    louder = [(less, more) for less, more in pairs if rates[more][0] > rates[less][1]]
+    assert louder == []
 
 
 LEARNING = '2 x 150 s + 1 x 150 s'

@@ -12,7 +12,7 @@ def test_the_simulated_alarm_is_as_the_page_says(reader: Reader) -> None:
     said = ''.join(reader.type(block) for block in blocks('alarm.md', '## A simulated one'))
     expected = [line for line in (DOCS / 'alarm.md').read_text(encoding='utf-8').splitlines()
                 if line.startswith(('half.bag: ', '  /slam', '    1. /slam', '    2. /navigation',
-                                    'late.bag: ', '  /leg_', '    1. /leg_', '    since 31'))]
+                                    'late.bag: ', '  /leg_', '    1. /leg_', '    since 32'))]
     assert len(expected) == 8
     for line in expected:
         assert line.split(', ...')[0] in said
