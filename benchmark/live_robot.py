@@ -21,6 +21,7 @@ from page import built
 from self_awareness import (Calibration, EncodingRules, EventType, EvidenceModel, Learner,
                             TrainedModel)
 from self_awareness.msg import SelfAwareness
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.live.processes import Processes, await_condition
 
@@ -161,10 +162,10 @@ def write_synthetic_model(model: Path, types: int) -> None:
         _SYNTHETIC_EVENTS, types))
     order = np.argsort(stamps, axis=None, kind='stable')
     learner = Learner(encoding=EncodingRules.defaults(), paper=True)
-    learner.count(
+    learner.count(RecordingEvents(
         [EventType(f'/{Robot.node_name(i % NODES)}', f'/topic_{i}', 'std_msgs/String')
          for i in range(types)],
-        stamps.ravel()[order] + _SYNTHETIC_START_S * SECOND_NS, order % types)
+        stamps.ravel()[order] + _SYNTHETIC_START_S * SECOND_NS, order % types))
     learner.model().save(str(model))
 
 

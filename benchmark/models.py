@@ -19,6 +19,7 @@ from typing import Any, Dict
 
 import page
 from self_awareness import EventType, Learner, TrainedModel, half_of
+from self_awareness.recordings import RecordingEvents
 from timers import SIZES, events_of
 
 _SECONDS = 60.0
@@ -34,7 +35,7 @@ def _train(types: int, path: str) -> Dict[str, Any]:
     middle = len(stamps) // 2
     for half, part in enumerate((slice(middle), slice(middle, None))):
         fingerprint = next(number for number in itertools.count() if half_of(number) == half)
-        learner.count(kinds, stamps[part], ids[part], fingerprint)
+        learner.count(RecordingEvents(kinds, stamps[part], ids[part], fingerprint=fingerprint))
     model = learner.model()
     trained = time.process_time()
     model.save(path)

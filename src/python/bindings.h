@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "self_awareness/core/evidence/limits/limits.h"
+#include "self_awareness/core/learn.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/clock_steps.h"
 #include "self_awareness/core/stream/event.h"
@@ -111,12 +112,6 @@ void forEachEvent(const Stamps& stamps, const Ids& ids, const MessageAttributes&
   }
 }
 
-/// The same where attributes do not matter.
-template <typename Handler>
-void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
-  forEachEvent(stamps, ids, MessageAttributes(), handler);
-}
-
 /// Tells a callback of Python, or None, how far a reader has come; Ctrl-C ends the reading.
 inline ros1::BagReader::Progress progressTo(const py::object& callback) {
   return [&callback](std::uint64_t done, std::uint64_t all) {
@@ -138,36 +133,45 @@ using MissingStates =
 using SenderState =
     std::tuple<std::int64_t, std::set<core::SourceGraph::Publication>, std::set<core::EventType>>;
 
+/// A recording as arrays: recordings.RecordingEvents of Python, which says what is in it.
+struct RecordingEvents {
+  /// @throw pybind11::type_error if a part of it has another type
+  explicit RecordingEvents(const py::object& recording);
+
+  core::Recording recording;  // all that it has a place for, but for the events
+  std::vector<core::EventType> event_types;
+  Stamps stamps;
+  Ids ids;
+  MessageAttributes attributes;
+  std::int64_t end = 0;  // [ns]; 0: with the last event
+  std::optional<std::pair<Stamps, Ids>> before;
+  MissingStates missing;
+  std::vector<SenderState> senders;
+  HostsState hosts;
+};
+
 /// Lets a detector judge a recording.
-/// @param steps with which the clock was set forward
-/// @param end the recording goes on in silence until then [ns]; none: it ends with the last event
-/// @param waiting how the machine was, in the order of time
-/// @param missing subscriptions, from a time [ns] on each, in the order of time
-/// @param senders from a time [ns] on each, in the order of time
 /// @param heard called after each event; whether it belongs to the same clock as those before
-inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const Ids& ids,
-                           const MessageAttributes& attributes, const core::ClockSteps& steps,
-                           std::optional<std::int64_t> end,
-                           const std::vector<core::Waiting>& waiting = {},
-                           const MissingStates& missing = {},
-                           const std::vector<SenderState>& senders = {},
+inline void judgeRecording(core::Detector& detector, const RecordingEvents& arrays,
                            const std::function<void(const core::Event&, bool)>& heard = nullptr) {
+  const core::Recording& recording = arrays.recording;
   std::optional<std::int64_t> last;
   bool set_forward = false;
-  auto next = waiting.begin();
-  auto next_missing = missing.begin();
-  auto next_senders = senders.begin();
+  auto next = recording.waiting.begin();
+  auto next_missing = arrays.missing.begin();
+  auto next_senders = arrays.senders.begin();
   const auto wait = [&](std::int64_t until) {
-    next = core::hearUntil(until, next, waiting.end(), detector);
-    for (; next_missing != missing.end() && next_missing->first <= until; ++next_missing) {
+    next = core::hearUntil(until, next, recording.waiting.end(), detector);
+    for (; next_missing != arrays.missing.end() && next_missing->first <= until; ++next_missing) {
       detector.setMissing(next_missing->second);
     }
-    for (; next_senders != senders.end() && std::get<0>(*next_senders) <= until; ++next_senders) {
+    for (; next_senders != arrays.senders.end() && std::get<0>(*next_senders) <= until;
+         ++next_senders) {
       detector.setSenders({std::get<1>(*next_senders), std::get<2>(*next_senders)});
     }
   };
-  forEachEvent(stamps, ids, attributes, [&](const core::Event& event) {
-    if (last && steps.between(*last, event.stamp)) {
+  forEachEvent(arrays.stamps, arrays.ids, arrays.attributes, [&](const core::Event& event) {
+    if (last && recording.clock_steps.between(*last, event.stamp)) {
       detector.restart();
       set_forward = true;
     }
@@ -179,9 +183,9 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
       heard(event, same_clock);
     }
   });
-  if (end && last && !core::isClockStep(*last, *end)) {
-    wait(*end);
-    detector.advance(*end);  // silence until the end is part of the recording
+  if (last && !core::isClockStep(*last, arrays.end)) {
+    wait(arrays.end);
+    detector.advance(arrays.end);  // silence until the end is part of the recording
   }
   detector.finish();
 }

@@ -52,12 +52,8 @@ void record(const core::Verdict& verdict, Verdicts& verdicts) {
 }
 
 Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
-               const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
-               std::optional<std::int64_t> end, const core::Vocabulary& vocabulary,
-               ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps,
-               const std::vector<core::Waiting>& waiting, const MissingStates& missing = {},
-               const MessageAttributes& attributes = {},
-               const std::vector<SenderState>& senders = {}) {
+               const core::Detector::Parameters& parameters, const RecordingEvents& arrays,
+               const core::Vocabulary& vocabulary, ros1::ReplayedMonitor* monitor) {
   Verdicts verdicts;
   core::Alarms alarms;
   std::int64_t last_end = 0;  // of a window [ns]
@@ -71,15 +67,14 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
       monitor->onVerdict(verdict);
     }
   });
-  judgeRecording(detector, stamps, ids, attributes, core::ClockSteps(std::move(clock_steps)), end,
-                 waiting, missing, senders, [&](const core::Event& event, bool same_clock) {
-                   if (const auto ended = same_clock ? std::nullopt : alarms.end(last_end)) {
-                     record(*ended, verdicts);
-                   }
-                   if (monitor != nullptr) {
-                     monitor->onEvent(event, same_clock);
-                   }
-                 });
+  judgeRecording(detector, arrays, [&](const core::Event& event, bool same_clock) {
+    if (const auto ended = same_clock ? std::nullopt : alarms.end(last_end)) {
+      record(*ended, verdicts);
+    }
+    if (monitor != nullptr) {
+      monitor->onEvent(event, same_clock);
+    }
+  });
   if (alarms.standing()) {
     record(*alarms.standing(), verdicts);
   }
@@ -88,36 +83,31 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
 
 Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int64_t window,
                       std::optional<double> threshold,
-                      const core::Detector::Parameters& parameters, const Stamps& stamps,
-                      const Ids& ids, std::optional<std::int64_t> end,
-                      const std::vector<core::EventType>& event_types,
-                      ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
-  const auto vocabulary = std::make_shared<core::Vocabulary>(event_types);
+                      const core::Detector::Parameters& parameters, const py::object& recording,
+                      ros1::ReplayedMonitor* monitor) {
+  RecordingEvents arrays(recording);
+  arrays.recording.waiting.clear();  // the paper's detector does not know the machine
+  const auto vocabulary = std::make_shared<core::Vocabulary>(arrays.event_types);
   return judge(
       core::paper::makeJudge(model, threshold, parameters.silence_is_abnormal, vocabulary), window,
-      parameters, stamps, ids, end, *vocabulary, monitor, std::move(clock_steps), {});
+      parameters, arrays, *vocabulary, monitor);
 }
 
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const std::shared_ptr<core::evidence::Model>& model,
-                         const core::Detector::Parameters& parameters, const Stamps& stamps,
-                         const Ids& ids, std::optional<std::int64_t> end,
-                         const std::vector<core::EventType>& event_types,
-                         ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps,
-                         const std::vector<core::Waiting>& waiting, const HostsState& hosts,
-                         const std::vector<core::Acceptance>& accepted,
-                         const MissingStates& missing, const MessageAttributes& attributes,
-                         const std::vector<SenderState>& senders) {
-  const auto vocabulary = std::make_shared<core::Vocabulary>(event_types);
+                         const core::Detector::Parameters& parameters, const py::object& recording,
+                         ros1::ReplayedMonitor* monitor,
+                         const std::vector<core::Acceptance>& accepted) {
+  const RecordingEvents arrays(recording);
+  const auto vocabulary = std::make_shared<core::Vocabulary>(arrays.event_types);
   const auto graph = std::make_shared<core::SourceGraph>(trained.graph);
-  for (const auto& [source, host] : hosts) {
+  for (const auto& [source, host] : arrays.hosts) {
     graph->place(source, host);
   }
   std::unique_ptr<core::Judge> judge_of_it =
       core::evidence::makeJudge(model, trained.limits(), trained.window, graph, vocabulary);
   judge_of_it->accept(acceptancesOf(accepted));
-  return judge(std::move(judge_of_it), trained.window, parameters, stamps, ids, end, *vocabulary,
-               monitor, std::move(clock_steps), waiting, missing, attributes, senders);
+  return judge(std::move(judge_of_it), trained.window, parameters, arrays, *vocabulary, monitor);
 }
 
 void bindVerdicts(py::module& m) {
@@ -175,31 +165,14 @@ void bindVerdicts(py::module& m) {
       .def("weight", &core::paper::Model::weight, py::arg("from_id"), py::arg("to_id"),
            "w_ij once all event types were seen")
       .def("judge", &judgeByPaper, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
-           py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-           py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
-           py::arg("clock_steps") = std::vector<std::int64_t>(),
-           "Verdicts on a recording. window: [ns]; threshold None: not calibrated.\n"
-           "stamps: int64 [ns], in order. ids: those from len(event_types) of the model on are\n"
-           "unknown events. end [ns]: the recording goes on in silence until then; None: it ends\n"
-           "with the last event. event_types: by id, those of the model first; empty: alarms\n"
-           "cannot name components that training never saw. monitor: a ReplayedMonitor that is\n"
-           "told of all of it. clock_steps: with which the clock was set forward\n"
-           "(find_clock_steps).");
-  m.def(
-      "judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
-      py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-      py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
-      py::arg("clock_steps") = std::vector<std::int64_t>(),
-      py::arg("waiting") = std::vector<core::Waiting>(), py::arg("hosts") = HostsState(),
-      py::arg("accepted") = std::vector<core::Acceptance>(), py::arg("missing") = MissingStates(),
-      py::arg("attributes") = py::none(), py::arg("senders") = std::vector<SenderState>(),
-      "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
-      "event_types: by id, those of the model first. waiting: how the machine was, in the order\n"
-      "of time (RecordedEvents.waiting). hosts: computers of sources, where the recording knows\n"
-      "better than the model. accepted: what is normal besides. missing: which\n"
-      "subscriptions are, from a time on each (missing_subscriptions). attributes: of the\n"
-      "messages (RecordedEvents.attributes); None: not known. senders: who sends, from a time on\n"
-      "each (RecordedEvents.senders).");
+           py::arg("recording"), py::arg("monitor") = nullptr,
+           "Verdicts on a recording (recordings.RecordingEvents). window: [ns]; threshold None:\n"
+           "not calibrated. monitor: a ReplayedMonitor that is told of all of it.");
+  m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
+        py::arg("parameters"), py::arg("recording"), py::arg("monitor") = nullptr,
+        py::arg("accepted") = std::vector<core::Acceptance>(),
+        "Verdicts on a recording by the EvidenceModel of a TrainedModel, like PaperModel.judge.\n"
+        "accepted: what is normal besides.");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;    // [ns]
   m.attr("SHORTEST_WINDOW") = core::kShortestWindow;  // [ns]

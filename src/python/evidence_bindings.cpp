@@ -69,7 +69,7 @@ py::array_t<double> evidenceOf(const std::shared_ptr<evidence::Model>& model, st
                                const std::optional<std::vector<double>>& limits) {
   EvidenceRows observer(model, window, limits);
   core::Windows windows(window, observer);
-  forEachEvent(stamps, ids, [&](const core::Event& event) { windows.add(event); });
+  forEachEvent(stamps, ids, {}, [&](const core::Event& event) { windows.add(event); });
   windows.finish();
   const std::size_t tracks = model->tracks().size();
   const std::vector<double>& rows = observer.rows();

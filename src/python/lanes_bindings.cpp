@@ -43,23 +43,22 @@ py::array_t<float> ofColumns(const Lanes& lanes, float evidence::Lanes::Column::
 }
 
 Lanes lanesOf(const ros1::TrainedModel& trained, const std::shared_ptr<evidence::Model>& model,
-              const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
-              std::optional<std::int64_t> end, const std::vector<core::EventType>& event_types,
-              std::vector<std::int64_t> starts, std::vector<std::int64_t> clock_steps,
-              const std::vector<core::Waiting>& waiting, const MessageAttributes& attributes,
-              const std::vector<core::Acceptance>& accepted) {
+              const core::Detector::Parameters& parameters, const py::object& recording,
+              std::vector<std::int64_t> starts, const std::vector<core::Acceptance>& accepted) {
+  RecordingEvents arrays(recording);
+  arrays.missing.clear();  // neither is evidence
+  arrays.senders.clear();
   evidence::Lanes lanes(model, std::move(starts));
   core::Detector detector(
       evidence::makeJudge(model, trained.limits(), trained.window,
                           std::make_shared<core::SourceGraph>(trained.graph),
-                          std::make_shared<core::Vocabulary>(event_types),
+                          std::make_shared<core::Vocabulary>(arrays.event_types),
                           [&](const core::Window& window, const evidence::Shares& shares) {
                             lanes.add(window, shares);
                           }),
       trained.window, parameters, [](const core::Verdict&) {});
   detector.accept(acceptancesOf(accepted));
-  judgeRecording(detector, stamps, ids, attributes, core::ClockSteps(std::move(clock_steps)), end,
-                 waiting);
+  judgeRecording(detector, arrays);
   return {model->components(), lanes.columns()};
 }
 
@@ -90,9 +89,7 @@ void bindLanes(py::module& m) {
           },
           "index of the track with the largest share, by stretch; None: there is no evidence");
   m.def("evidence_lanes", &lanesOf, py::arg("trained"), py::arg("model"), py::arg("parameters"),
-        py::arg("stamps"), py::arg("ids"), py::arg("end"), py::arg("event_types"),
-        py::arg("starts"), py::arg("clock_steps") = std::vector<std::int64_t>(),
-        py::arg("waiting") = std::vector<core::Waiting>(), py::arg("attributes") = py::none(),
+        py::arg("recording"), py::arg("starts"),
         py::arg("accepted") = std::vector<core::Acceptance>(),
         "EvidenceLanes of a recording, judged as by judge_by_evidence. starts: of the stretches\n"
         "[ns], in order; ValueError if they are not.");

@@ -53,41 +53,55 @@ Findings fromState(const py::bytes& state) {
   return findings;
 }
 
-/// A recording of ids of a model.
-core::Recording recordingOf(const Stamps& stamps, const Ids& ids,
-                            std::optional<std::uint64_t> fingerprint, std::int64_t robot_start,
-                            std::vector<std::int64_t> clock_steps, std::string robot,
-                            const MessageAttributes& attributes) {
-  core::Recording recording;
-  recording.events.reserve(static_cast<std::size_t>(stamps.size()));
-  forEachEvent(stamps, ids, attributes,
+/// A recording with its events, by its own ids.
+core::Recording recordingOf(const RecordingEvents& arrays) {
+  core::Recording recording = arrays.recording;
+  recording.events.reserve(static_cast<std::size_t>(arrays.stamps.size()));
+  forEachEvent(arrays.stamps, arrays.ids, arrays.attributes,
                [&](const core::Event& event) { recording.events.push_back(event); });
-  recording.fingerprint = fingerprint;
-  recording.robot_start = robot_start;
-  recording.robot = std::move(robot);
-  recording.clock_steps = core::ClockSteps(std::move(clock_steps));
   return recording;
 }
 
 /// A learner, and how messages became its events.
 class Learner : public core::Learner {
  public:
-  using Before = std::optional<std::pair<Stamps, Ids>>;
-
   Learner(const Parameters& parameters, core::SourceGraph graph, ros1::EncodingRules rules)
       : core::Learner(parameters, std::move(graph)), rules_(std::move(rules)) {}
 
-  /// Gives the events of a recording the ids of the learner.
-  void intern(const std::vector<core::EventType>& types, const Before& before,
-              core::Recording& recording) {
-    if (before) {
+  void count(const py::object& from) {
+    const core::Recording recording = interned(RecordingEvents(from));
+    const py::gil_scoped_release release;
+    core::Learner::count(recording);
+  }
+  void add(const py::object& from) {
+    core::Recording recording = interned(RecordingEvents(from));
+    const py::gil_scoped_release release;
+    core::Learner::add(std::move(recording));
+  }
+
+  ros1::TrainedModel counted(bool watch) {
+    ros1::TrainedModel model = trained(counts());
+    if (watch) {
+      model.watch();
+    }
+    return model;
+  }
+  ros1::TrainedModel learned() { return trained(learn()); }
+
+ private:
+  /// A recording by the ids of the learner.
+  core::Recording interned(const RecordingEvents& arrays) {
+    core::Recording recording = recordingOf(arrays);
+    const std::vector<core::EventType>& types = arrays.event_types;
+    if (arrays.before) {
       for (const core::EventType& type : types) {
         intern(type);  // first, so that ids are in the order of the part
       }
-      if (before->first.size() > 0) {
-        recording.since = before->first.at(0);
+      const auto& [stamps, ids] = *arrays.before;
+      if (stamps.size() > 0) {
+        recording.since = stamps.at(0);
       }
-      forEachEvent(before->first, before->second, [&](const core::Event& event) {
+      forEachEvent(stamps, ids, {}, [&](const core::Event& event) {
         if (event.id < types.size()) {
           recording.before.push_back({event.stamp, intern(types[event.id])});
         }
@@ -101,18 +115,9 @@ class Learner : public core::Learner {
       }
       event.id = *id;
     }
+    return recording;
   }
 
-  ros1::TrainedModel counted(bool watch) {
-    ros1::TrainedModel model = trained(counts());
-    if (watch) {
-      model.watch();
-    }
-    return model;
-  }
-  ros1::TrainedModel learned() { return trained(learn()); }
-
- private:
   core::EventId intern(const core::EventType& type) {
     const std::size_t before = vocabulary().size();
     const core::EventId id = core::Learner::intern(type);
@@ -132,37 +137,10 @@ class Learner : public core::Learner {
   ros1::EncodingRules rules_;
 };
 
-/// Binds what takes in a recording given as arrays.
-/// @param learn count() or add()
-template <typename Learn>
-void bindRecording(py::class_<Learner>& learner, const char* name, const char* words,
-                   Learn learn) {
-  learner.def(
-      name,
-      [learn](Learner& self, const std::vector<core::EventType>& types, const Stamps& stamps,
-              const Ids& ids, std::uint64_t fingerprint, std::int64_t robot_start,
-              std::vector<std::int64_t> clock_steps, std::string robot,
-              const MessageAttributes& attributes, std::string bag,
-              const Learner::Before& before) {
-        core::Recording recording =
-            recordingOf(stamps, ids, fingerprint, robot_start, std::move(clock_steps),
-                        std::move(robot), attributes);
-        recording.name = std::move(bag);
-        self.intern(types, before, recording);
-        const py::gil_scoped_release release;
-        (self.*learn)(std::move(recording));
-      },
-      py::arg("event_types"), py::arg("stamps"), py::arg("ids"), py::arg("fingerprint") = 0,
-      py::arg("robot_start") = 0, py::arg("clock_steps") = std::vector<std::int64_t>(),
-      py::arg("robot") = "", py::arg("attributes") = py::none(), py::arg("bag") = "",
-      py::arg("before") = py::none(), words);
-}
-
 void bindLearner(py::module& m) {
   m.def("half_of", &core::evidence::halfOf, py::arg("fingerprint"),
         "The half of a training that a recording belongs to, 0 or 1.");
-  py::class_<Learner> learner(m, "Learner", "Learns from one recording after the other.");
-  learner
+  py::class_<Learner>(m, "Learner", "Learns from one recording after the other.")
       .def(py::init([](const core::evidence::Tuning& tuning, const std::set<EdgeState>& graph,
                        std::int64_t window, ros1::EncodingRules encoding, std::int64_t bin_size,
                        std::int64_t horizon_bins, bool evidence, bool paper) {
@@ -177,6 +155,11 @@ void bindLearner(py::module& m) {
            "tuning: the numbers of the evidence detector; graph: as of TrainedModel; window,\n"
            "bin_size: [ns]; horizon_bins 0: unbounded; evidence, paper: the detectors that it is\n"
            "for")
+      .def("count", &Learner::count, py::arg("recording"),
+           "Counts a recording (recordings.RecordingEvents). After a ValueError the learner is\n"
+           "incomplete: do not use it any more.")
+      .def("add", &Learner::add, py::arg("recording"),
+           "The same, and keeps its events for the limits of learn().")
       .def("model", &Learner::counted, py::arg("watch") = true,
            "Ends the learning: a TrainedModel of all that was counted, without limits. watch:\n"
            "choose what is watched; not needed for a model that is merged into another.")
@@ -185,19 +168,6 @@ void bindLearner(py::module& m) {
            "the recordings of add().")
       .def_property_readonly("why", &Learner::why,
                              "why learn() found no limits; empty: it has found some");
-  bindRecording(learner, "count",
-                "Counts a recording given as arrays; ids are indices of event_types.\n"
-                "fingerprint: says which half of the training it belongs to (half_of);\n"
-                "robot_start: of the robot [ns], 0: not known; clock_steps: with which the clock\n"
-                "was set forward (find_clock_steps); robot: its name, empty: not known;\n"
-                "attributes: of the messages (RecordedEvents.attributes), None: not known; bag:\n"
-                "what the model calls it; before: stamps and ids of the events of the recording\n"
-                "before these, which only say when event types came first; ids from\n"
-                "len(event_types) on are of no type of these.\n"
-                "After a ValueError it is incomplete: do not use it any more.",
-                &core::Learner::count);
-  bindRecording(learner, "add", "The same, and keeps its events for the limits of learn().",
-                &core::Learner::add);
 }
 
 void bindCalibrator(py::module& m) {
@@ -221,25 +191,14 @@ void bindCalibrator(py::module& m) {
            py::arg("trained"), py::arg("settle_time"), "settle_time: [ns]")
       .def(
           "add",
-          [](Calibrator& self, const Stamps& stamps, const Ids& ids,
-             std::optional<std::uint64_t> fingerprint, std::int64_t robot_start,
-             std::vector<std::int64_t> clock_steps, std::string robot,
-             const MessageAttributes& attributes, std::vector<core::Waiting> waiting) {
-            core::Recording recording =
-                recordingOf(stamps, ids, fingerprint, robot_start, std::move(clock_steps),
-                            std::move(robot), attributes);
-            recording.waiting = std::move(waiting);
+          [](Calibrator& self, const py::object& from, bool trained_on) {
+            const core::Recording recording = recordingOf(RecordingEvents(from));
             const py::gil_scoped_release release;
-            fingerprint ? self.addTrainedOn(recording) : self.addHeldOut(recording);
+            trained_on ? self.addTrainedOn(recording) : self.addHeldOut(recording);
           },
-          py::arg("stamps"), py::arg("ids"), py::arg("fingerprint") = py::none(),
-          py::arg("robot_start") = 0, py::arg("clock_steps") = std::vector<std::int64_t>(),
-          py::arg("robot") = "", py::arg("attributes") = py::none(),
-          py::arg("waiting") = std::vector<core::Waiting>(),
-          "Takes in a recording; ids are the model's, and OTHER_MODE tells a mode that it does\n"
-          "not know. fingerprint: that the training knows it by: it is judged by what the other\n"
-          "half says; None: it was not trained on. waiting: how the machine was, in the order of\n"
-          "time (RecordedEvents.waiting), empty: not known. The others: as Learner.count().")
+          py::arg("recording"), py::arg("trained_on") = false,
+          "Takes in a recording (recordings.RecordingEvents); ids are the model's, OTHER_MODE\n"
+          "tells a mode that it lacks. trained_on: the other half of the training judges it.")
       .def("part", &Calibrator::part, "A calibrator without findings, for the same model.")
       .def("findings", &Calibrator::findings, "LimitFindings of what was added.")
       .def("merge", &Calibrator::merge, py::arg("findings"))

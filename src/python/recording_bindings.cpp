@@ -38,12 +38,16 @@ struct RecordedEvents {
   std::vector<SenderState> senders;
 };
 
-// The array is a view of its owner's data, and keeps the owner alive: events may be many.
+/// The getter of a member. The array is a view of its owner's data, and keeps the owner alive:
+/// events may be many.
 template <typename T>
-py::array_t<T> viewOf(const std::vector<T>& values, const py::object& owner) {
-  py::array_t<T> view(static_cast<py::ssize_t>(values.size()), values.data(), owner);
-  view.attr("setflags")(py::arg("write") = false);
-  return view;
+auto viewOf(std::vector<T> RecordedEvents::*member) {
+  return [member](const py::object& owner) {
+    const std::vector<T>& values = owner.cast<const RecordedEvents&>().*member;
+    py::array_t<T> view(static_cast<py::ssize_t>(values.size()), values.data(), owner);
+    view.attr("setflags")(py::arg("write") = false);
+    return view;
+  };
 }
 
 py::array_t<std::uint32_t> packAttributes(const py::array_t<double>& ages,
@@ -102,10 +106,11 @@ ros1::BagSummary summaryOf(const Files& files, const InLog& recording) {
                    : ros1::BagReader(paths).summary();
 }
 
-RecordedEvents readEvents(const Files& files, const InLog& recording,
-                          const ros1::EncodingRules& rules,
-                          const std::vector<core::EventType>& known, const ros1::TimeRange& range,
-                          const py::object& progress) {
+RecordedEvents readEvents(const Files& files, const ros1::EncodingRules& rules,
+                          const std::vector<core::EventType>& known, std::optional<double> start,
+                          std::optional<double> end, const py::object& progress,
+                          const InLog& recording) {
+  const ros1::TimeRange range = timeRange(start, end);
   core::Vocabulary vocabulary(known);
   const ros1::EventIds ids = [&](const core::EventType& type) {
     return ros1::internUpTo(known.size() + ros1::kMostEventTypes, type, vocabulary);
@@ -223,12 +228,9 @@ void bindBags(py::module& m) {
       py::arg("summary"), py::arg("encoding"), py::arg("expected"),
       "Which of these (TrainedModel.subscriptions) are missing from a time [ns] on each,\n"
       "although the node runs, by the BagSummary of an event log; empty of a bag.");
-  m.def(
-      "summarise_bag",
-      [](const Files& path, const InLog& recording) { return summaryOf(path, recording); },
-      py::arg("path"), py::arg("recording") = py::none(),
-      "BagSummary of a bag, or of a recording in an event log (see read_events). Raises "
-      "BagError.");
+  m.def("summarise_bag", &summaryOf, py::arg("path"), py::arg("recording") = py::none(),
+        "BagSummary of a bag, or of a recording in an event log (see read_events). Raises "
+        "BagError.");
   m.def(
       "bag_span",
       [](const std::string& path) {
@@ -299,24 +301,10 @@ void bindBags(py::module& m) {
   py::class_<RecordedEvents>(m, "RecordedEvents", "The events of a recording, in memory.")
       .def_readonly("summary", &RecordedEvents::summary)
       .def_readonly("event_types", &RecordedEvents::event_types, "by id")
-      .def_property_readonly(
-          "stamps",
-          [](const py::object& self) {
-            return viewOf(self.cast<const RecordedEvents&>().stamps, self);
-          },
-          "int64 [ns], read-only")
-      .def_property_readonly(
-          "ids",
-          [](const py::object& self) {
-            return viewOf(self.cast<const RecordedEvents&>().ids, self);
-          },
-          "uint32, read-only")
-      .def_property_readonly(
-          "attributes",
-          [](const py::object& self) {
-            return viewOf(self.cast<const RecordedEvents&>().attributes, self);
-          },
-          "of the messages, uint32, read-only: pack_attributes(); 0: not known")
+      .def_property_readonly("stamps", viewOf(&RecordedEvents::stamps), "int64 [ns], read-only")
+      .def_property_readonly("ids", viewOf(&RecordedEvents::ids), "uint32, read-only")
+      .def_property_readonly("attributes", viewOf(&RecordedEvents::attributes),
+                             "of the messages, uint32, read-only: pack_attributes(); 0: not known")
       .def_readonly("waiting", &RecordedEvents::waiting,
                     "how the machine was: a Waiting for each stretch of time; empty: not known")
       .def_readonly(
@@ -339,13 +327,7 @@ void bindBags(py::module& m) {
       "The values in a bag of the fields that the encoding has classes for, by datatype; NaN: no\n"
       "number. start, end: as for read_events(). Raises BagError.");
   m.def(
-      "read_events",
-      [](const Files& path, const ros1::EncodingRules& encoding,
-         const std::vector<core::EventType>& event_types, std::optional<double> start,
-         std::optional<double> end, const py::object& progress, const InLog& recording) {
-        return readEvents(path, recording, encoding, event_types, timeRange(start, end), progress);
-      },
-      py::arg("path"), py::arg("encoding"),
+      "read_events", &readEvents, py::arg("path"), py::arg("encoding"),
       py::arg("event_types") = std::vector<core::EventType>(), py::arg("start") = py::none(),
       py::arg("end") = py::none(), py::arg("progress") = py::none(),
       py::arg("recording") = py::none(),
@@ -356,7 +338,38 @@ void bindBags(py::module& m) {
       "path: of a file, or of the files of one recording, in their order. Raises BagError.");
 }
 
+/// Reads an attribute of an object of Python.
+/// @throw pybind11::type_error names it if it has another type
+template <typename T>
+void take(const py::object& recording, const char* name, T& value) {
+  try {
+    value = recording.attr(name).cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(std::string("a recording has a wrong type: ") + name);
+  }
+}
+
 }  // namespace
+
+RecordingEvents::RecordingEvents(const py::object& from) {
+  std::vector<std::int64_t> clock_steps;
+  take(from, "event_types", event_types);
+  take(from, "stamps", stamps);
+  take(from, "ids", ids);
+  take(from, "end", end);
+  take(from, "fingerprint", recording.fingerprint);
+  take(from, "bag", recording.name);
+  take(from, "robot", recording.robot);
+  take(from, "robot_start", recording.robot_start);
+  take(from, "clock_steps", clock_steps);
+  take(from, "attributes", attributes);
+  take(from, "waiting", recording.waiting);
+  take(from, "senders", senders);
+  take(from, "missing", missing);
+  take(from, "hosts", hosts);
+  take(from, "before", before);
+  recording.clock_steps = core::ClockSteps(std::move(clock_steps));
+}
 
 void bindRecordings(py::module& m) {
   m.def(
@@ -364,7 +377,7 @@ void bindRecordings(py::module& m) {
       [](const Stamps& stamps, const Ids& ids) {
         std::vector<core::Event> events;
         events.reserve(static_cast<std::size_t>(stamps.size()));
-        forEachEvent(stamps, ids, [&](const core::Event& event) { events.push_back(event); });
+        forEachEvent(stamps, ids, {}, [&](const core::Event& event) { events.push_back(event); });
         return core::findClockSteps(events);
       },
       py::arg("stamps"), py::arg("ids"),

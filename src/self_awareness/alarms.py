@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Dict, Iterable, List, Optional
+from typing import Any, Dict, Iterable, List, Optional, Sequence
 
 from self_awareness import Alarm, EventType, Suspect, Verdicts
 from self_awareness.stamps import SECOND_NS
@@ -13,7 +13,7 @@ def in_order(verdicts: Verdicts) -> List[Alarm]:
     return sorted([*verdicts.alarms, *verdicts.suspicions], key=lambda alarm: alarm.begin)
 
 
-def as_values(alarm: Alarm, event_types: List[EventType], origin: int) -> Dict[str, Any]:
+def as_values(alarm: Alarm, event_types: Sequence[EventType], origin: int) -> Dict[str, Any]:
     """Return all that an alarm says.
 
     Args:

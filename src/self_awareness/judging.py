@@ -13,16 +13,13 @@ BOTH = 'both'
 """The detectors that a model may be trained for."""
 
 Judge = Callable[..., Verdicts]
-"""Takes the arguments of judge_by_evidence() from `stamps` on: those of the recording. Without the
-event types (those of the model first), those of unknown events are not known."""
+"""Takes a RecordingEvents, and a ReplayedMonitor if one is to be told of each window."""
 
 
 def paper_judge(trained: TrainedModel, model: PaperModel, threshold: Optional[float],
                 parameters: DetectorParameters) -> Judge:
     """Return what judges by the paper's score; threshold None: scores only, no alarms."""
-    return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(), **_: (
-        model.judge(trained.window, threshold, parameters, stamps, ids, end, list(event_types),
-                    monitor, clock_steps))
+    return partial(model.judge, trained.window, threshold, parameters)
 
 
 def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,

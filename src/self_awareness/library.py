@@ -112,7 +112,7 @@ class Model:
             self._computed = EvidenceModel(self.trained)
         recording = recordings.read(self.trained, parts[0])
         judge = evidence_judge(self.trained, parameters or DetectorParameters(), self._computed)
-        return Alarms(recording, recording.judged_by(judge))
+        return Alarms(recording, judge(recording))
 
     def coverage(self) -> List[Coverage]:
         """Return how soon the death of each component is found, and whether late answers are.

@@ -4,16 +4,15 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import (Any, Callable, Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional,
-                    Sequence, Set, Tuple)
+from typing import (Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set,
+                    Tuple)
 
 import numpy as np
 
-from self_awareness import (LATEST_EVENT, LEAST_KNOWN, LONGEST_SILENCE, Acceptance, BagError,
-                            DetectorParameters, EncodingRules, EventType, EvidenceLanes,
-                            EvidenceModel, ModelFileError, RecordedEvents, Recording, TrainedModel,
-                            Verdicts, Waiting, evidence_lanes, find_clock_steps,
-                            missing_subscriptions, progress, read_events, summarise_bag)
+from self_awareness import (LATEST_EVENT, LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules,
+                            EventType, ModelFileError, RecordedEvents, Recording, TrainedModel,
+                            Waiting, find_clock_steps, missing_subscriptions, progress,
+                            read_events, summarise_bag)
 from self_awareness.output_files import MODEL, RESULT_BAG
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
@@ -53,55 +52,59 @@ class ClockStep:
 
 @dataclass(frozen=True)
 class RecordingEvents:
-    """The events of a recording as a model encodes them; ids after the model's are unknown.
+    """The events of a recording, and what else is to be known of it to learn from it or judge it.
 
     Args:
-        part: what was asked for.
-        event_types: by id, those of the model first, those of players (senders) last.
+        event_types: by id, those of the model first, those of players (senders) last. Alarms
+            cannot name what training never saw without its type.
         stamps: int64 [ns], in order.
-        ids: uint32, one for each stamp.
-        origin: stamp of the bag's first message [ns], where its time in seconds begins.
-        end: stamp of the last message that was asked for, event or not [ns].
-        fingerprint: of the whole bag.
-        one_sender_a_topic: the bag was written by a program that keeps only one (BagSummary).
-        copied: so it is, and it is a copy of a recording.
+        ids: uint32, one for each stamp; those after the model's are unknown.
+        end: stamp of the last message that was asked for, event or not [ns]; 0: of the last event.
+        fingerprint: of the whole bag; it says which half of a training this is (half_of).
         bag: what the file is called, or the bag that an event log was made of.
-        robot_start: when the robot was started [ns]; 0: not known.
         robot: its name; empty: not known.
+        robot_start: when the robot was started [ns]; 0: not known.
         clock_steps: stamps of the first events after the clock was set [ns], where stamps do not
             say it.
-        set_back: by how much the clock of a bag was set back, by such stamps [ns].
-        waiting: how the machine was, one stretch of time after the other; empty: not known.
-        left_out: why some connections of a bag are no events, whatever the encoding.
-        hosts: computers of sources, as an event log says.
-        missing: which of the subscriptions that the model expects, from a time [ns] on each, as
-            an event log says.
-        senders: what comes from two senders of one name, and what is played, from a time [ns] on.
         attributes: of the messages, uint32, one for each stamp (docs/method.md, section 3.10);
             None: not known.
+        waiting: how the machine was, one stretch of time after the other; empty: not known.
+        senders: what comes from two senders of one name, and what is played, from a time [ns] on.
+        missing: which of the subscriptions that the model expects, from a time [ns] on each, as
+            an event log says.
+        hosts: computers of sources, as an event log says.
+        before: stamps and ids of what came before, which only says when event types came first;
+            ids from len(event_types) on are of no type of these.
+        part: what was asked for.
+        origin: stamp of the bag's first message [ns], where its time in seconds begins.
+        one_sender_a_topic: the bag was written by a program that keeps only one (BagSummary).
+        copied: so it is, and it is a copy of a recording.
+        set_back: by how much the clock of a bag was set back, by such stamps as clock_steps [ns].
+        left_out: why some connections of a bag are no events, whatever the encoding.
         files: path and stamp of the first message [ns] of each file, of a bag.
     """
 
-    part: BagPart
-    event_types: List[EventType]
+    event_types: Sequence[EventType]
     stamps: np.ndarray
     ids: np.ndarray
-    origin: int
-    end: int
-    fingerprint: int
+    end: int = 0
+    fingerprint: int = 0
+    bag: str = ''
+    robot: str = ''
+    robot_start: int = 0
+    clock_steps: Sequence[int] = ()
+    attributes: Optional[np.ndarray] = None
+    waiting: Sequence[Waiting] = ()
+    senders: Sequence[Tuple[int, Set[Tuple[str, str]], Set[EventType]]] = ()
+    missing: Sequence[Tuple[int, Set[Tuple[str, str]]]] = ()
+    hosts: Mapping[str, str] = field(default_factory=dict)
+    before: Optional[Tuple[np.ndarray, np.ndarray]] = None
+    part: BagPart = BagPart('')
+    origin: int = 0
     one_sender_a_topic: bool = False
     copied: bool = False
-    bag: str = ''
-    robot_start: int = 0
-    robot: str = ''
-    clock_steps: Sequence[int] = ()
     set_back: Mapping[int, int] = field(default_factory=dict)
-    waiting: Sequence[Waiting] = ()
     left_out: Tuple[str, ...] = ()
-    hosts: Mapping[str, str] = field(default_factory=dict)
-    missing: Sequence[Tuple[int, Set[Tuple[str, str]]]] = ()
-    senders: Sequence[Tuple[int, Set[Tuple[str, str]], Set[EventType]]] = ()
-    attributes: Optional[np.ndarray] = None
     files: Sequence[Tuple[str, int]] = ()
 
     @classmethod
@@ -112,13 +115,14 @@ class RecordingEvents:
         set_back = dict(_first_after(events.stamps, summary.set_back))
         steps = [] if summary.clock_watched else find_clock_steps(events.stamps, events.ids)
         _, end = part.span(summary.start, summary.end)
-        return cls(part, events.event_types, events.stamps, events.ids, summary.start, end,
-                   summary.fingerprint, summary.one_sender_a_topic, summary.copied, summary.bag,
-                   summary.robot_start, summary.robot or part.robot,
-                   sorted({*steps, *set_back}), set_back, events.waiting, tuple(summary.left_out),
-                   RobotGraph(*summary.graph).hosts_of_sources(encoding),
-                   senders=events.senders, attributes=events.attributes,
-                   files=summary.files)
+        return cls(
+            events.event_types, events.stamps, events.ids, end, summary.fingerprint, summary.bag,
+            summary.robot or part.robot, summary.robot_start, sorted({*steps, *set_back}),
+            events.attributes, events.waiting, events.senders,
+            hosts=RobotGraph(*summary.graph).hosts_of_sources(encoding), part=part,
+            origin=summary.start, one_sender_a_topic=summary.one_sender_a_topic,
+            copied=summary.copied, set_back=set_back, left_out=tuple(summary.left_out),
+            files=summary.files)
 
     def place(self, stamp: int) -> str:
         """Return where a stamp [ns] lies, of a recording in several files; empty: it is in one."""
@@ -127,20 +131,6 @@ class RecordingEvents:
             return ''
         path, start = begun[-1]
         return f'{(stamp - start) / SECOND_NS:.1f} s of {os.path.basename(path)}'
-
-    def judged_by(self, judge: Callable[..., Verdicts], monitor: Any = None) -> Verdicts:
-        """Return what a judging.Judge says; a ReplayedMonitor is told of each window."""
-        return judge(self.stamps, self.ids, self.end, self.event_types, monitor,
-                     clock_steps=self.clock_steps, waiting=self.waiting, hosts=self.hosts,
-                     missing=self.missing, attributes=self.attributes, senders=self.senders)
-
-    def lanes(self, trained: TrainedModel, computed: EvidenceModel,
-              parameters: DetectorParameters, starts: Sequence[int],
-              accepted: Sequence[Acceptance] = ()) -> EvidenceLanes:
-        """Return the evidence of each component in stretches that start at these stamps [ns]."""
-        return evidence_lanes(trained, computed, parameters, self.stamps, self.ids, self.end,
-                              self.event_types, starts, self.clock_steps, self.waiting,
-                              self.attributes, accepted)
 
     @cached_property
     def heard(self) -> np.ndarray:

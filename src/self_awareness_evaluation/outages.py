@@ -15,6 +15,7 @@ from self_awareness import DetectorParameters, EncodingRules, EvidenceModel, Tun
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.judging import BOTH, evidence_judge
 from self_awareness.parts import BagPart
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
@@ -119,9 +120,9 @@ def _evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
     watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks, limits)
                if not math.isnan(limit)}
     recording = recordings.read(trained, _below(data, BagPart(case.judged)))
-    verdicts = evidence_judge(trained, DetectorParameters())(
-        recording.stamps, recording.ids, recording.end, recording.event_types,
-        attributes=recording.attributes)
+    verdicts = evidence_judge(trained, DetectorParameters())(RecordingEvents(
+        recording.event_types, recording.stamps, recording.ids, recording.end,
+        attributes=recording.attributes))
     judged = judged_of(verdicts, recording.event_types, trained.graph)
     return JudgedCase(judged.alarms, judged.suspicions, recording.origin, recording.end,
                       len(watched))

@@ -14,6 +14,7 @@ from typing import (Callable, Dict, FrozenSet, Hashable, Iterable, List, Optiona
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, EventType, Persistence, Roc, Waiting
+from self_awareness.recordings import RecordingEvents
 
 _Key = TypeVar('_Key', bound=Hashable)
 
@@ -57,9 +58,12 @@ class WindowedEvents:
         return replace(self, event_types=list(ids), ids=translation[self.ids])
 
     @property
-    def fingerprint(self) -> int:
-        """Return a number of its own, like that of a bag."""
-        return zlib.crc32(self.stamps.tobytes())
+    def events(self) -> RecordingEvents:
+        """Return what is learned from and judged, with a number of its own, like that of a bag."""
+        # - 1, because the window in which the recording ends is the last one.
+        return RecordingEvents(self.event_types, self.stamps, self.ids, self.end - 1,
+                               zlib.crc32(self.stamps.tobytes()), attributes=self.attributes,
+                               waiting=self.waiting)
 
     def stamps_of(self, source: str) -> np.ndarray:
         """Return when a component sends [ns]."""

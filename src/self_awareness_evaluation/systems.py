@@ -25,7 +25,6 @@ from self_awareness import (DEFAULT_WINDOW, Alarm, Coverage, DetectorParameters,
                             EvidenceModel, Learner, Occurrence, PaperModel, TrainedModel, Tuning,
                             Verdicts, fold_incidents, judge_by_evidence)
 from self_awareness.calibration import limits
-from self_awareness.calibration.limits import HeldOut
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.records import (ALARM, FALSE_POSITIVE_RATE, Judged, SystemAlarm,
                                                WindowedEvents, common_threshold, persistent,
@@ -65,8 +64,7 @@ class Paper:
         """Count the delays."""
         learner = Learner(evidence=False, paper=True)
         for recording in recordings:
-            learner.count(recording.event_types, recording.stamps, recording.ids,
-                          recording.fingerprint, attributes=recording.attributes)
+            learner.count(recording.events)
         trained = learner.model(watch=False)
         self._types = trained.event_types
         self._model = PaperModel(trained)
@@ -87,9 +85,8 @@ class Paper:
     def verdicts(self, recording: WindowedEvents) -> Verdicts:
         """Return what the detector says of a recording."""
         encoded = recording.encoded(self._types)
-        # - 1, because the window in which the recording ends is the last one.
         return self._model.judge(DEFAULT_WINDOW, self.threshold, DetectorParameters(),
-                                 encoded.stamps, encoded.ids, encoded.end - 1)
+                                 replace(encoded.events, event_types=()))
 
 
 class Evidence:
@@ -114,8 +111,7 @@ class Evidence:
         """Count the delays and gaps."""
         learner = Learner(self._tuning, self._graph)
         for recording in recordings:
-            learner.add(recording.event_types, recording.stamps, recording.ids,
-                        recording.fingerprint, attributes=recording.attributes)
+            learner.add(recording.events)
         self._trained = learner.learn()
         for recording in recordings:
             states = [set(present) for _, present in recording.subscriptions]
@@ -125,12 +121,9 @@ class Evidence:
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the limits."""
-        encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
         self._trained.calibration, = limits.find(
             self._trained, DetectorParameters().settle_time, [self._budget],
-            [HeldOut(recording.stamps, recording.ids, attributes=recording.attributes,
-                     waiting=recording.waiting)
-             for recording in encoded])
+            [recording.encoded(self._trained.event_types).events for recording in recordings])
 
     def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
@@ -159,13 +152,10 @@ class Evidence:
         """Return what the detector says of a recording, suspicions included."""
         encoded = recording.encoded(self._trained.event_types)
         expected = self._trained.subscriptions
-        # - 1, because the window in which the recording ends is the last one.
-        return judge_by_evidence(self._trained, self._model, DetectorParameters(), encoded.stamps,
-                                 encoded.ids, encoded.end - 1, encoded.event_types,
-                                 missing=[(stamp, expected - present)
-                                          for stamp, present in encoded.subscriptions],
-                                 waiting=list(encoded.waiting),
-                                 attributes=encoded.attributes)
+        return judge_by_evidence(
+            self._trained, self._model, DetectorParameters(),
+            replace(encoded.events, missing=[(stamp, expected - present)
+                                             for stamp, present in encoded.subscriptions]))
 
 
 def judged_of(verdicts: Verdicts, event_types: Sequence[EventType],

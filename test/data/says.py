@@ -39,8 +39,7 @@ def says(model: str, recordings: Sequence[str]) -> Dict[str, Any]:
                              'recordings': {}}
     for part in expand([BagPart.parse(path) for path in recordings]):
         recording = read(trained, part)
-        scored, judged = (judge(recording.stamps, recording.ids, recording.end,
-                                recording.event_types) for judge in (paper, evidence))
+        scored, judged = paper(recording), evidence(recording)
         scores = scored.score.tolist()
         found['recordings'][recording.part.path.rsplit('/', 1)[-1]] = {
             'evidence': _alarms(recording, judged),

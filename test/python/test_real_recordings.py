@@ -13,6 +13,7 @@ from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, Tr
                             judge_by_evidence, read_events, recordings, summarise_bag)
 from self_awareness.commands import calibrate, score, train
 from self_awareness.parts import BagPart
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
 PAPER = ('--detector', 'paper')
@@ -192,9 +193,9 @@ def test_a_bridge_that_dies_is_found(voice_assistant: Path,
     onset = recording.origin + killed_s * SECOND_NS
     of_bridge = [kind.source == '/lisa_mqtt_ros_bridge' for kind in recording.event_types]
     lives = (recording.stamps < onset) | ~np.array(of_bridge)[recording.ids]
-    verdicts = judge_by_evidence(trained, EvidenceModel(trained), DetectorParameters(),
-                                 recording.stamps[lives], recording.ids[lives], recording.end,
-                                 recording.event_types)
+    verdicts = judge_by_evidence(
+        trained, EvidenceModel(trained), DetectorParameters(), RecordingEvents(
+            recording.event_types, recording.stamps[lives], recording.ids[lives], recording.end))
     alarm = verdicts.alarms[0]
     assert onset < alarm.begin < onset + 60 * SECOND_NS
     assert alarm.culprit == '/lisa_mqtt_ros_bridge'

@@ -22,6 +22,7 @@ from std_msgs.msg import String
 import self_awareness
 from self_awareness.learning.programs import executable
 from self_awareness.msg import SelfAwareness
+from self_awareness.recordings import RecordingEvents
 from self_awareness.status_names import task_of
 
 T = TypeVar('T')
@@ -348,7 +349,7 @@ def make_model(path: str, components: Iterable[Tuple[str, str, float]],
     read = self_awareness.read_events(
         write_bag(path + '.bag', operation(components, 120, seed=1)), encoding)
     learner = self_awareness.Learner(encoding=encoding, paper=True)
-    learner.count(read.event_types, read.stamps, read.ids)
+    learner.count(RecordingEvents(read.event_types, read.stamps, read.ids))
     model = learner.model()
     calibration = self_awareness.PaperCalibration()
     calibration.threshold = THRESHOLD

@@ -17,6 +17,7 @@ import self_awareness
 from live_system import Process, operation, ours, run_program, talker, write_bag
 from self_awareness import TrainedModel
 from self_awareness.parts import BagPart
+from self_awareness.recordings import RecordingEvents
 from self_awareness.srv import Accept, AcceptResponse
 from self_awareness.training import many_bags
 from self_awareness.workers import InProcess
@@ -140,7 +141,7 @@ class MonitorCase(FolderCase):
             for event, _ in enumerate(types):
                 stamps.append(10**12 + tick * 50 * 10**6 + event * 10**6)
                 ids.append(event)
-        learner.count(types, stamps, ids)
+        learner.count(RecordingEvents(types, stamps, ids))
         model = learner.model()
         if threshold is not None:
             calibration = self_awareness.PaperCalibration()

@@ -12,7 +12,7 @@ from typing import Any, Iterable, List, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from self_awareness import (OTHER_MODE, Calibration, Calibrator, LimitFindings, TrainedModel,
-                            Waiting, recordings)
+                            recordings)
 from self_awareness.calibration.heads_and_tails import Silences
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
@@ -20,27 +20,6 @@ from self_awareness.workers import InProcess, Workers
 
 BUDGET = 0.5
 """False alarms an hour that limits are made for, by default."""
-
-
-@dataclass(frozen=True)
-class HeldOut:
-    """A recording that was not trained on, by stamps [ns] and ids.
-
-    Args:
-        robot_start: when the robot was started [ns]; 0: not known.
-        clock_steps: where the clock was set forward [ns].
-        robot: its name; empty: not known.
-        attributes: of the messages; None: not known.
-        waiting: how the machine was, one stretch of time after the other; empty: not known.
-    """
-
-    stamps: np.ndarray
-    ids: np.ndarray
-    robot_start: int = 0
-    clock_steps: Sequence[int] = ()
-    robot: str = ''
-    attributes: Optional[np.ndarray] = None
-    waiting: Sequence[Waiting] = ()
 
 
 @dataclass(frozen=True)
@@ -71,7 +50,7 @@ def _events_of(trained: TrainedModel, task: TrainedOn) -> RecordingEvents:
     return replace(task.events, ids=ids[task.events.ids])
 
 
-_Task = Union[HeldOut, RecordingEvents, TrainedOn]
+_Task = Union[RecordingEvents, TrainedOn]
 
 
 def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
@@ -153,10 +132,8 @@ class _Judging:
 def _judge(judging: _Judging, task: _Task) -> LimitFindings:
     """Let a recording be judged; one of the training by the half that it does not belong to."""
     calibrator = judging.calibrator.part()
-    fingerprint = None
     if isinstance(task, TrainedOn):
-        task = _events_of(judging.trained, task)
-        fingerprint = task.fingerprint
-    calibrator.add(task.stamps, task.ids, fingerprint, task.robot_start, task.clock_steps,
-                   task.robot, task.attributes, task.waiting)
+        calibrator.add(_events_of(judging.trained, task), trained_on=True)
+    else:
+        calibrator.add(task)
     return calibrator.findings()

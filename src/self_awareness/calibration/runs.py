@@ -201,7 +201,7 @@ def judge_runs(judge: Judge, window: int, runs: Sequence[Run]) -> List[JudgedRun
     """Let a detector judge runs in windows of a length [ns]."""
     judged = []
     for run in progress.each(runs, 'scoring'):
-        verdicts = run.events().judged_by(judge)
+        verdicts = judge(run.events())
         judged.append(JudgedRun(run, verdicts, np.nan_to_num(verdicts.score),
                                 _labels(run, verdicts, window)))
     return judged

@@ -104,7 +104,7 @@ def _score(arguments: argparse.Namespace) -> int:
     with result_bag(arguments.result_bag, arguments.model, trained,
                     threshold is not None, coverage) as replay:
         for recording in named.each(lambda part: cli.read_recording('score', trained, part)):
-            judged.append(Judged(by, recording, recording.judged_by(judge, replay(recording))))
+            judged.append(Judged(by, recording, judge(recording, replay(recording))))
             found += _print(judged[-1], arguments.details)
         if not judged:
             named.check()

@@ -156,9 +156,7 @@ def _recording_side(name: str, named: Named, like: TrainedModel, skip_bad: bool 
     counted = 0
     for recording in named.each(lambda part: recordings.read(like, part)):
         counted += 1
-        learner.count(recording.event_types, recording.stamps, recording.ids,
-                      recording.fingerprint, recording.robot_start, recording.clock_steps,
-                      recording.robot, bag=recording.bag)
+        learner.count(recording)
         for kind, end in _ends(recording):
             if kind not in ends or end.silent > ends[kind].silent:
                 ends[kind] = end

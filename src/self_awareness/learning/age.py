@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Dict, List, Sequence
 
 from self_awareness import (Acceptance, ComponentDrift, DetectorParameters, EvidenceModel,
-                            Recording, TrainedModel, accepted_file, drift_of, recordings)
+                            Recording, TrainedModel, accepted_file, drift_of, evidence_lanes,
+                            recordings)
 from self_awareness.judging import evidence_judge
 from self_awareness.parts import BagPart, Named, look
 from self_awareness.recordings import DistinctRecordings, overlap
@@ -152,11 +153,12 @@ def _heard(trained: TrainedModel, computed: EvidenceModel, accepted: Sequence[Ac
     first = int(events.stamps[0])
     if events.end - first < parameters.settle_time + _SHORTEST_NS:
         return left_out(SHORT)
-    verdicts = events.judged_by(evidence_judge(trained, parameters, computed, accepted))
+    verdicts = evidence_judge(trained, parameters, computed, accepted)(events)
     alarms = [*verdicts.alarms, *verdicts.suspicions]
     if alarms:
         return left_out(INCIDENT, f'{alarms[0].kind} {alarms[0].culprit}'.strip())
     # The largest shares once the detector has settled.
-    lanes = events.lanes(trained, computed, parameters, [first + parameters.settle_time], accepted)
+    lanes = evidence_lanes(trained, computed, parameters, events, [first + parameters.settle_time],
+                           accepted)
     return Heard(part, recording, events.origin,
                  shares=dict(zip(lanes.components, lanes.shares[:, 0].tolist())))

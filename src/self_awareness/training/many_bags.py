@@ -227,9 +227,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
         events = heads_and_tails.without_start_up(whole)
         part = events.part
         learner = counting.learner(encoding)
-        learner.count(events.event_types, events.stamps, events.ids, events.fingerprint,
-                      events.robot_start, events.clock_steps, events.robot, events.attributes,
-                      events.bag, _before(encoding, whole, events))
+        learner.count(replace(events, before=_before(encoding, whole, events)))
         model = learner.model(watch=False)
         graph = (RobotGraph.beside(part.files) if summary.encoding is None  # no event log
                  else RobotGraph(*summary.graph))

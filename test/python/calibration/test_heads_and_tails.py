@@ -26,9 +26,9 @@ def recorded(name: str, start: Optional[float] = None,
     times = np.concatenate(kept)
     order = np.argsort(times, kind='stable')
     return RecordingEvents(
-        BagPart(name, start), [EventType(f'/{node}', f'/{node}/t', 'T') for node in spans],
-        ORIGIN + (times[order] * SECOND_NS).astype(np.int64), ids[order], ORIGIN,
-        ORIGIN + int(LENGTH_S * SECOND_NS), 1)
+        [EventType(f'/{node}', f'/{node}/t', 'T') for node in spans],
+        ORIGIN + (times[order] * SECOND_NS).astype(np.int64), ids[order],
+        ORIGIN + int(LENGTH_S * SECOND_NS), 1, part=BagPart(name, start), origin=ORIGIN)
 
 
 @pytest.mark.parametrize('heard, begin', [

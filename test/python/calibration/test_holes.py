@@ -26,9 +26,8 @@ def recorded(name: str, *silent: Tuple[float, float], seconds: float = 100.0) ->
     stamps = np.concatenate([gps, ticks + 0.01])
     order = np.argsort(stamps, kind='stable')
     ids = np.repeat(np.array([0, 1], dtype=np.uint32), [len(gps), len(ticks)])[order]
-    return RecordingEvents(BagPart(name), [GPS, SCAN],
-                           ORIGIN + (stamps[order] * SECOND_NS).astype(np.int64), ids, ORIGIN,
-                           ORIGIN + int(seconds * SECOND_NS), 1)
+    return RecordingEvents([GPS, SCAN], ORIGIN + (stamps[order] * SECOND_NS).astype(np.int64), ids,
+                           ORIGIN + int(seconds * SECOND_NS), 1, part=BagPart(name), origin=ORIGIN)
 
 
 def found(*recordings: RecordingEvents) -> List[holes.Hole]:

@@ -10,7 +10,6 @@ from conftest import Message, jittery_robot, write_bag
 
 from self_awareness import DetectorParameters, TrainedModel, Waiting, recordings
 from self_awareness.calibration import limits
-from self_awareness.calibration.limits import HeldOut
 from self_awareness.judging import evidence_judge
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
@@ -48,7 +47,7 @@ def measured(recording: Any) -> List[Waiting]:
 
 def alarms(model: str, recording: Any, waiting: Sequence[Waiting]) -> List[Any]:
     judge = evidence_judge(TrainedModel.load(model), DetectorParameters())
-    found = judge(recording.stamps, recording.ids, recording.end, waiting=waiting)
+    found = judge(replace(recording, waiting=waiting))
     return list(found.alarms) + list(found.suspicions)
 
 
@@ -61,7 +60,8 @@ def test_a_death_afterwards_is_found(evidence_model: str, recording: Any) -> Non
     dead = recording.origin + int((UNTIL_S + 10.0) * SECOND_NS)
     lives = [not (stamp > dead and recording.event_types[id_].source == '/laser')
              for stamp, id_ in zip(recording.stamps, recording.ids)]
-    left = replace(recording, stamps=recording.stamps[lives], ids=recording.ids[lives])
+    left = replace(recording, stamps=recording.stamps[lives], ids=recording.ids[lives],
+                   attributes=None)
     found = alarms(evidence_model, left, measured(left))[0]
     assert recording.event_types[found.suspects[0].id].source == '/laser'
 
@@ -73,7 +73,7 @@ def test_it_is_no_silence_that_a_limit_must_allow(evidence_model: str, tmp_path:
     def found_after(recording: Any, waiting: Sequence[Waiting]) -> List[float]:
         trained.calibration, = limits.find(
             trained, DetectorParameters().settle_time, [limits.BUDGET],
-            [HeldOut(recording.stamps, recording.ids, waiting=waiting)])
+            [replace(recording, waiting=waiting)])
         return [each.death_found_after for each in trained.coverage()]
 
     usual, stood = (recordings.read(trained, BagPart(write_bag(tmp_path / name, messages)))

@@ -14,6 +14,7 @@ from conftest import jittery_robot
 from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, EvidenceModel,
                             TrainedModel, accepted_file, judge_by_evidence, read_events)
 from self_awareness.commands import calibrate, score
+from self_awareness.recordings import RecordingEvents
 
 PAPER = ('--detector', 'paper')
 MakeBag = Callable[..., str]
@@ -174,7 +175,7 @@ def test_the_table_has_every_window_with_all_digits(model: str, dead_laser: str,
     rows, trained = rows_of(table), TrainedModel.load(model)
     events = read_events(dead_laser, trained.encoding, trained.event_types)
     verdicts = judge_by_evidence(trained, EvidenceModel(trained), DetectorParameters(),
-                                 events.stamps, events.ids)
+                                 RecordingEvents(events.event_types, events.stamps, events.ids))
     assert [float(row['score']) for row in rows] == verdicts.score.tolist()
     assert [row['abnormal'] == '1' for row in rows] == verdicts.abnormal.tolist()
     assert {float(row['threshold']) for row in rows} == {EVIDENCE_THRESHOLD}

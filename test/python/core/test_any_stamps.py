@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Any, Callable, Dict, List, Sequence, Tuple
+from dataclasses import replace
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ from reference_evidence import BINS, MS, SECOND, Counts, is_mode, lower_edge, st
 
 from self_awareness import (Calibrator, DetectorParameters, EventType, EvidenceModel, Learner,
                             PaperModel, TrainedModel)
+from self_awareness.recordings import RecordingEvents
 
 HOUR = 3600 * SECOND
 DAY = 24 * HOUR
@@ -92,10 +94,11 @@ def pieces(events: Sequence[Event]) -> List[List[Event]]:
     return found
 
 
-def arrays(events: Sequence[Event]) -> Tuple[np.ndarray, np.ndarray]:
-    """Return stamps, and ids of TYPES."""
-    return (np.array([stamp for stamp, _ in events]),
-            np.array([KINDS.index(kind) for _, kind in events]))
+def arrays(events: Sequence[Event], trained: Optional[TrainedModel] = None) -> RecordingEvents:
+    """Return a recording by ids of TYPES, or of a model."""
+    ids = {kind: index for index, kind in enumerate(KINDS)} if trained is None else ids_of(trained)
+    return RecordingEvents([] if trained else TYPES, np.array([stamp for stamp, _ in events]),
+                           np.array([ids.get(kind, len(ids)) for _, kind in events]))
 
 
 def trained_on(all_events: Sequence[Sequence[Event]], window: int = WINDOW, bin_size: int = BIN,
@@ -103,7 +106,7 @@ def trained_on(all_events: Sequence[Sequence[Event]], window: int = WINDOW, bin_
     """Train both detectors on recordings."""
     learner = Learner(window=window, bin_size=bin_size, horizon_bins=horizon_bins, paper=True)
     for events in all_events:
-        learner.count(TYPES, *arrays(events), 0)
+        learner.count(arrays(events))
     return learner.model()
 
 
@@ -114,9 +117,8 @@ def ids_of(trained: TrainedModel) -> Dict[str, int]:
 
 def evidence_of(trained: TrainedModel, events: Sequence[Event]) -> np.ndarray:
     """Return the evidence of a recording."""
-    ids = ids_of(trained)
-    return EvidenceModel(trained).evidence(
-        WINDOW, arrays(events)[0], np.array([ids.get(kind, len(ids)) for _, kind in events]))
+    of_model = arrays(events, trained)
+    return EvidenceModel(trained).evidence(WINDOW, of_model.stamps, of_model.ids)
 
 
 @examples
@@ -180,8 +182,7 @@ def test_the_papers_scores_are_the_literal_ones(
                 window * window_ns, len(inside),
                 sum(piece[n][1] not in reference.types for n in inside),
                 math.fsum(scores[n] for n in inside) / len(inside) if inside else math.nan))
-    found = model.judge(window_ns, THRESHOLD, DetectorParameters(), arrays(events)[0],
-                        np.array([ids.get(kind, len(ids)) for _, kind in events]))
+    found = model.judge(window_ns, THRESHOLD, DetectorParameters(), arrays(events, trained))
     assert list(zip(found.start.tolist(), found.events.tolist(), found.unknown.tolist())) == [
         row[:3] for row in expected]
     assert found.score == pytest.approx([row[3] for row in expected], abs=1e-12, nan_ok=True)
@@ -207,10 +208,8 @@ def test_limits_are_numbers(all_events: List[List[Event]], normal: List[List[Eve
     trained = trained_on(all_events)
     assume(len(EvidenceModel(trained).tracks))
     calibrator = Calibrator(trained, SETTLE)
-    ids = ids_of(trained)
     for events in normal:
-        calibrator.add(arrays(events)[0],
-                       np.array([ids.get(kind, len(ids)) for _, kind in events]))
+        calibrator.add(arrays(events, trained))
     try:
         found = calibrator.find(0.5)
     except ValueError as refused:
@@ -222,3 +221,8 @@ def test_limits_are_numbers(all_events: List[List[Event]], normal: List[List[Eve
     assert 0 <= found.windows <= sum(
         (piece[-1][0] - piece[0][0]) // WINDOW + 2 for events in normal
         for piece in pieces(events))
+
+
+def test_a_part_of_a_wrong_type_is_named() -> None:
+    with pytest.raises(TypeError, match='fingerprint'):
+        Learner().count(replace(arrays([(0, 'A')]), fingerprint='a'))

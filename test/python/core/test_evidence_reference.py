@@ -15,6 +15,7 @@ from reference_evidence import LABELS, LEAST_EFFECT, Counts, Event, ReferenceMod
 from reference_scorer import ReferenceScorer
 
 from self_awareness import EventType, EvidenceModel, Learner, TrainedModel, Tuning
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
 MS = 1_000_000
@@ -121,8 +122,9 @@ class Robot:
         every_type = [EventType('', letter, f'[mode: {letter}]' if is_mode(letter) else '')
                       for letter in LETTERS]
         for half, events in enumerate(recordings):
-            learner.count(every_type, np.array([t for t, _ in events]),
-                          np.array([LETTERS.index(kind) for _, kind in events]), half)
+            learner.count(RecordingEvents(
+                every_type, np.array([t for t, _ in events]),
+                np.array([LETTERS.index(kind) for _, kind in events]), fingerprint=half))
         return learner.model()
 
     def arrays(self, events: List[Event]) -> Tuple[np.ndarray, np.ndarray]:

@@ -2,12 +2,15 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from reference import auc
 
 from self_awareness import DetectorParameters, EventType, Learner, PaperModel, Roc
+from self_awareness.judging import paper_judge
+from self_awareness.recordings import RecordingEvents
 
 MS = 1_000_000
 
@@ -31,16 +34,12 @@ def test_the_roc_is_that_of_all_pairs(seed: int) -> None:
 
 def test_silence_to_the_end_of_the_recording_has_windows_only_where_it_is_asked_for() -> None:
     learner = Learner(window=100 * MS, bin_size=10 * MS, paper=True)
-    types = [EventType('', 'A', '')]
-    stamps = np.arange(50) * 20 * MS
-    learner.count(types, stamps, np.zeros(50))
+    heard = RecordingEvents([EventType('', 'A', '')], np.arange(50) * 20 * MS, np.zeros(50))
+    learner.count(heard)
     trained = learner.model()
-    model = PaperModel(trained)
-    parameters = DetectorParameters()
-    heard = model.judge(trained.window, 0.5, parameters, stamps, np.zeros(50))
-    to_end = model.judge(trained.window, 0.5, parameters, stamps, np.zeros(50), 3000 * MS)
-    assert len(heard.start) == 10 and len(to_end.start) == 31
+    judge = paper_judge(trained, PaperModel(trained), 0.5, DetectorParameters())
+    to_end = judge(replace(heard, end=3000 * MS))
+    assert len(judge(heard).start) == 10 and len(to_end.start) == 31
     assert to_end.abnormal[10:30].all()
     # The clock was set before the end: the hour between is no silence.
-    assert len(model.judge(trained.window, 0.5, parameters, stamps, np.zeros(50),
-                           4000 * 1000 * MS).start) == 10
+    assert len(judge(replace(heard, end=4000 * 1000 * MS)).start) == 10

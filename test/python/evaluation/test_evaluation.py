@@ -16,11 +16,10 @@ from evaluation_robot import BATTERY, LASER, START, robot
 def test_windows_and_counts_are_those_of_the_detector() -> None:
     recording = robot(20.0, 1, silent=((8.0, 12.0),))
     learner = Learner(paper=True)
-    learner.count(recording.event_types, recording.stamps, recording.ids)
+    learner.count(recording.events)
     trained = learner.model()
-    verdicts = PaperModel(trained).judge(
-        DEFAULT_WINDOW, None, DetectorParameters(), recording.stamps,
-        recording.encoded(trained.event_types).ids, recording.end - 1)
+    verdicts = PaperModel(trained).judge(DEFAULT_WINDOW, None, DetectorParameters(),
+                                         recording.encoded(trained.event_types).events)
     assert np.array_equal(recording.starts(), verdicts.start)
     assert len(verdicts.start) == 200
     assert np.array_equal(settling(recording), verdicts.settling)

@@ -39,8 +39,8 @@ def judged(model: str, bag: str, detector: str = 'evidence',
         judge = evidence_judge(trained, parameters, evidence)
         threshold = None if trained.calibration is None else EVIDENCE_THRESHOLD
     recording = recordings.read(trained, BagPart.parse(bag))
-    verdicts = judge(recording.stamps, recording.ids, recording.end, recording.event_types)
-    return Judged(JudgedBy(trained, model, parameters, threshold, evidence), recording, verdicts)
+    return Judged(JudgedBy(trained, model, parameters, threshold, evidence), recording,
+                  judge(recording))
 
 
 def dead(model: str, folder: Path) -> Judged:

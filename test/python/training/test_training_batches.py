@@ -11,6 +11,7 @@ from conftest import jittery_robot, learned, trained, write_bag
 
 from self_awareness import EncodingRules, EvidenceModel, Learner, TrainedModel, read_events
 from self_awareness.parts import BagPart
+from self_awareness.recordings import RecordingEvents
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.workers import InProcess, Processes, Workers
@@ -52,8 +53,9 @@ def at_once(bags: List[str]) -> TrainedModel:
     whole = Learner(encoding=EncodingRules.defaults())
     for bag, recording in zip(bags, counted(bags).model.recordings):
         events = read_events(bag, EncodingRules.defaults())
-        whole.count(events.event_types, events.stamps, events.ids, recording.fingerprint,
-                    attributes=events.attributes, bag=recording.bag)
+        whole.count(RecordingEvents(events.event_types, events.stamps, events.ids,
+                                    fingerprint=recording.fingerprint, bag=recording.bag,
+                                    attributes=events.attributes))
     return whole.model()
 
 

@@ -8,7 +8,7 @@ from typing import Dict, Optional, Tuple
 import numpy as np
 
 from self_awareness import (DetectorParameters, EvidenceLanes, EvidenceModel, TrainedModel,
-                            Verdicts)
+                            Verdicts, evidence_lanes)
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
@@ -65,5 +65,5 @@ class Judged:
         """
         if self.by.evidence is None or self.by.threshold is None:
             return None
-        return self.recording.lanes(self.by.trained, self.by.evidence, self.by.parameters,
-                                    starts.tolist())
+        return evidence_lanes(self.by.trained, self.by.evidence, self.by.parameters,
+                              self.recording, starts.tolist())
