@@ -234,8 +234,9 @@ def test_ctrl_c_ends_a_training_within_two_seconds(four_bags: List[str], tmp_pat
     output, ended_after_s = tmp_path / 'm', []
     with training(four_bags, output) as process:
         begin = time.monotonic()
+        wait_until(lambda: not children(process.pid), 'the work is done')
+        whole_s = time.monotonic() - begin
         process.communicate()
-    whole_s = time.monotonic() - begin
     for number in itertools.count():
         if len(ended_after_s) >= max(KILLS // 4, 3):
             break

@@ -108,7 +108,7 @@ def test_the_numbers_of_the_readme_are_of_this_method() -> None:
 
 
 def test_more_knowledge_makes_no_robot_louder() -> None:
-    """More starts, or the graph, and more false alarms than chance explains, is a rule too many."""
+    """More starts, or the graph, and more false alarms than by chance, is a rule too many."""
     with open(DOCS / 'evaluation' / 'families.csv', encoding='utf-8') as file:
         rates = {(each['of'], each['learning'], each['system']):
                  (float(each['per_hour_low']), float(each['per_hour_high']))

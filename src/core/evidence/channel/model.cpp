@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/evidence/channel/channels.h"
-#include "core/evidence/count/heads_and_tails.h"
 #include "core/evidence/count/log_bins.h"
+#include "core/evidence/watch/heads_and_tails.h"
 
 namespace self_awareness::core::evidence {
 namespace {

@@ -9,9 +9,9 @@
 #include <set>
 
 #include "core/evidence/channel/channel.h"
-#include "core/evidence/count/heads_and_tails.h"
 #include "core/evidence/count/starts.h"
 #include "core/evidence/limits/gap_tail.h"
+#include "core/evidence/watch/heads_and_tails.h"
 
 namespace self_awareness::core::evidence {
 namespace {

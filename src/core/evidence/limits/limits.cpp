@@ -9,9 +9,9 @@
 
 #include "core/evidence/channel/channel.h"
 #include "core/evidence/channel/scorer.h"
-#include "core/evidence/count/heads_and_tails.h"
 #include "core/evidence/limits/limit_search.h"
 #include "core/evidence/limits/misleading_pairs.h"
+#include "core/evidence/watch/heads_and_tails.h"
 #include "core/evidence/watch/relations.h"
 #include "self_awareness/core/verdict/suspect.h"
 

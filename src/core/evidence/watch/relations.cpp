@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "core/evidence/count/heads_and_tails.h"
 #include "core/evidence/count/log_bins.h"
+#include "core/evidence/watch/heads_and_tails.h"
 
 namespace self_awareness::core::evidence {
 namespace {

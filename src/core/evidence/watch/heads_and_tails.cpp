@@ -1,4 +1,4 @@
-#include "core/evidence/count/heads_and_tails.h"
+#include "core/evidence/watch/heads_and_tails.h"
 
 #include <algorithm>
 
