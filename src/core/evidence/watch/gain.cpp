@@ -22,17 +22,15 @@ double InformationGain::operator()(EventId from, EventId to) const {
     return 0;
   }
   const auto number = static_cast<double>(measured_on_.total(*id_there_[from], *id_there_[to]));
-  const std::uint64_t learned_number = learned_from_.total(from, to);
-  if (number < fewest_delays_ || learned_number == 0) {
+  if (number < fewest_delays_ || learned_from_.total(from, to) == 0) {
     return 0;
   }
   const DelayHistogram measured = measured_on_.delays(*id_there_[from], *id_there_[to]);
-  const DelayHistogram learned = learned_from_.delays(from, to);
-  const double total = static_cast<double>(learned_number) + kPriorCount * log_bins::kBins;
+  const ByBin learned = learned_from_.delays(from, to).probabilities();
   double sum = 0;
   for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
     if (measured[bin] > 0) {  // logarithms take most of the time
-      sum += measured[bin] * (std::log((learned[bin] + kPriorCount) / total) - any_[from][bin]);
+      sum += measured[bin] * (std::log(learned[bin]) - any_[from][bin]);
     }
   }
   return sum / number;

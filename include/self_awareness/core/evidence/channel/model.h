@@ -82,7 +82,8 @@ class Model {
   std::int64_t longestGap(EventId id) const { return statistics_.type(id).longestGap(); }
   /// The same, and as long as things that happen at one moment are apart, kRateSpan [ns].
   std::int64_t longestPause(EventId id) const { return longestGap(id) + kRateSpan; }
-  /// The same, or what recordings cut off of a type that is often silent (heads_and_tails.h) [ns].
+  /// Longest gap, or what recordings cut off of a type that is often silent [ns]:
+  /// heads_and_tails.h
   std::int64_t longestSilence(EventId id) const;
   /// Longest time without any event in training that was no stall of the machine [ns].
   std::int64_t longestSilence() const;
