@@ -17,9 +17,10 @@ from self_awareness_evaluation.records import FaultRecord, Learning, WindowedEve
 from self_awareness_evaluation.records import Robot as RecordedRobot
 
 DEATH = 'death'  # the crash of a component that is silent until something is asked of it
+UNHEARD = 'unheard'  # the same before it has said anything: as if it were not in the recording
 
 SELDOM = 'seldom'
-"""The crash of a component that speaks when something happens, and answers to nobody."""
+"""The crash of a component that speaks when something happens, and is asked by nobody."""
 
 NEVER = 'absent'  # what is latched at every start does not come
 
@@ -31,7 +32,8 @@ TITLES: Dict[str, str] = {
     STOP: 'others stop after a crash', SLOWER: '0.7 of the rate', OLD: 'stamps are 3 s older',
     LOSSES: '30 % of the messages lost', OTHER: 'no transform, failed goals, an error (WARN)',
     FLOOD: 'log lines without end', NEVER: 'no latched message (WARN)',
-    FAILS: 'four in five goals fail, not one in twelve'}
+    FAILS: 'four in five goals fail, not one in twelve',
+    UNHEARD: 'deaths before the first answer'}
 """What tables call the kinds of faults."""
 
 KINDS = tuple(TITLES)  # as they are told apart in the results
@@ -42,6 +44,7 @@ AFTER_DEATH_S = 1800.0  # and for so long after a death
 RESTARTS_IN_S, AFTER_RESTART_S = 10.0, 180.0
 """A component that is started again is silent for so long, and then watched for so long [s]."""
 
+_ASKED = (DEATH, UNHEARD)
 _ONSET_S = 60.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
 _ONE_IN = 3  # components has old stamps, or loses messages
@@ -112,7 +115,8 @@ class Records:
                after_death_s: float = AFTER_DEATH_S) -> Iterator[FaultRecord]:
         """Yield a recording of every fault of some kinds, of each component in turn.
 
-        The onset of a DEATH is when the first message would have come that is missing.
+        The onset of a DEATH, or UNHEARD, is when the first message would have come that is
+        missing.
 
         Args:
             kinds: of KINDS.
@@ -122,8 +126,9 @@ class Records:
         robot = self.robot
         regular, answering = robot.regular, robot.answering
         late = [source for source in regular if source in answering]
+        asked = [source for source in answering if source not in regular]
         who = {CRASH: regular, HALF_RATE: regular, LATE: late, MISSES: late,
-               DEATH: [source for source in answering if source not in regular],
+               DEATH: asked, UNHEARD: asked,
                STARVED: [''], SILENT: [''], SELDOM: robot.seldom, RESTART: regular,
                SLOWER: regular, OLD: robot.numbered[::_ONE_IN],
                LOSSES: robot.numbered[1::_ONE_IN],
@@ -153,21 +158,22 @@ class Records:
         seconds = onset_s + after_s
         onset_s = 0.0 if kind == NEVER else onset_s
         lasts_s = {RESTART: RESTARTS_IN_S, LOSSES: _LOSES_S}.get(kind, LONGEST_START_S)
-        fault = Fault(CRASH if kind in (DEATH, SELDOM, NEVER) else kind, source, onset_s,
+        fault = Fault(CRASH if kind in (*_ASKED, SELDOM, NEVER) else kind, source, onset_s,
                       onset_s + lasts_s)
-        if kind in (DEATH, *AFTER_CRASH):
+        if kind in (*_ASKED, *AFTER_CRASH):
             healthy = self._recorded(_FAULTS, number, seconds)
             begin = healthy.end - nanoseconds(seconds)
             sent = healthy.stamps_of(source)
             missing = sent[sent >= begin + nanoseconds(onset_s)]
-            if not len(missing) or (kind == DEATH
-                                    and missing[0] + nanoseconds(_MISSING_S) > healthy.end):
+            if not len(missing) or (kind in _ASKED and (
+                    (len(missing) == len(sent)) != (kind == UNHEARD)
+                    or missing[0] + nanoseconds(_MISSING_S) > healthy.end)):
                 return
             others = self.robot.strangers_of(source, _STOP_TOGETHER) if kind == STOP else ()
             fault = replace(fault, others=others,
                             follows_s=(int(missing[0]) - begin) / SECOND_NS + _FOLLOWS_S)
         recording = self._recorded(_FAULTS, number, seconds, fault)
-        onset = (int(missing[0]) if kind == DEATH
+        onset = (int(missing[0]) if kind in _ASKED
                  else recording.end - nanoseconds(seconds) + nanoseconds(onset_s))
         yield FaultRecord(kind, (source,) if source else (), recording, onset,
                           None if lasts_s == LONGEST_START_S else onset + nanoseconds(lasts_s),
@@ -183,7 +189,7 @@ class Records:
             return RESTARTS_IN_S + AFTER_RESTART_S
         if kind in (LOSSES, NEVER, FAILS):
             return 2.0 * AFTER_ONSET_S
-        return after_death_s if kind == DEATH else AFTER_ONSET_S
+        return after_death_s if kind in _ASKED else AFTER_ONSET_S
 
     def _recorded(self, section: _Section, number: int, seconds: float,
                   fault: Fault = NOTHING) -> WindowedEvents:

@@ -97,7 +97,7 @@ class Robot:
 
     @property
     def seldom(self) -> List[str]:
-        """The components that send when something happens, and answer to nobody."""
+        """The components that send when something happens, and are asked by nobody."""
         others = {*self.regular, *self.answering, *self.latching}
         return self.sending(lambda output: output.source not in others)
 
@@ -122,7 +122,7 @@ class Robot:
 
     @property
     def answering(self) -> List[str]:
-        """The components that answer to another one."""
+        """The components that answer to another one, and not only to what they began."""
         return self.sending(self._answers_others)
 
     def strangers_of(self, source: str, most: int) -> Tuple[str, ...]:
@@ -169,8 +169,11 @@ class Robot:
         return replace(self._recording(scene, origin), waiting=_waiting(scene, origin))
 
     def _answers_others(self, output: Output) -> bool:
-        trigger = output.emission.trigger
-        return trigger is not None and self.outputs[trigger].source != output.source
+        asked_by, trigger = set(), output.emission.trigger
+        while trigger is not None:
+            asked_by.add(self.outputs[trigger].source)
+            trigger = self.outputs[trigger].emission.trigger
+        return bool(asked_by) and output.source not in asked_by
 
     def _published(self, scene: Scene, index: int) -> np.ndarray:
         """Return when an output sends, with the fault."""

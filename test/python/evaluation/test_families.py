@@ -10,7 +10,7 @@ from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import (DEATH, NEVER, RESTARTS_IN_S, SELDOM,
-                                                         Records)
+                                                         UNHEARD, Records)
 from self_awareness_evaluation.families.robot import WARNING, Output, Robot
 from self_awareness_evaluation.families.scene import (CRASH, FAILS, FLOOD, HALF_RATE, LATE, LOAD,
                                                       LOSSES, MISSES, NOTHING, OLD, OTHER, RESTART,
@@ -135,6 +135,7 @@ def test_the_graph_and_who_can_break() -> None:
     events = draw('events_only', 1)
     assert all('watchdog' in source for source in events.regular)
     assert len(events.answering) == 9
+    assert set(draw('servers', 1).answering) == {'/server0', '/server1'}  # clients ask themselves
     driving = draw('driving_docked', 1).regular
     assert '/motion0' not in driving and '/planner0' in driving
 
@@ -476,8 +477,10 @@ def test_every_component_has_its_faults() -> None:
 
 
 def test_a_death_counts_from_the_first_message_that_is_missing() -> None:
-    deaths = list(Records('events_only', 1).faults((DEATH,)))
-    assert 5 <= len(deaths) <= 9
+    deaths = list(Records('events_only', 1).faults((DEATH, UNHEARD)))
+    assert 8 <= len(deaths) <= 16
     for death in deaths:
-        assert (death.recording.stamps_of(death.source) < death.onset).all()
+        heard = death.recording.stamps_of(death.source)
+        assert (heard < death.onset).all()
+        assert (len(heard) == 0) == (death.kind == UNHEARD)
         assert death.onset < death.recording.end - 60 * SECOND_NS
