@@ -84,8 +84,6 @@ void bindTuning(py::module& m) {
             self.without.insert(channel);
           },
           py::arg("channel"), "Switches a channel off. ValueError if there is none of this name.")
-      .def("least_effect_on_delay", &Tuning::leastEffectOnDelay, py::arg("period"),
-           "on the delay after an event type with this mean gap [ns], in ns")
       .def(py::self == py::self)
       .def(py::pickle(&stateOfTuning, &tuningFrom));
 }

@@ -44,8 +44,6 @@ const std::vector<TuningNumber>& tuningNumbers() {
        std::nullopt},
       {"least_effect", &Tuning::least_effect, 0, 1e3, "s", "A change of a delay that is no fault.",
        std::nullopt},
-      {"least_effect_of_period", &Tuning::least_effect_of_period, 0, 0.99, "",
-       "The same as a share of the period.", std::nullopt},
       {"most_of_limit", &Tuning::most_of_limit, 1, 1e9, "", "Times its limit at which a sum ends.",
        std::nullopt},
       {"arming_events", &Tuning::arming_events, 1, 1e6, "",
@@ -146,10 +144,6 @@ void Tuning::validate() const {
   for (const TuningNumber& number : tuningNumbers()) {
     set(checked, number.name, this->*number.value);
   }
-}
-
-double Tuning::leastEffectOnDelay(double period) const {
-  return std::max(least_effect * 1e9, least_effect_of_period * period);
 }
 
 bool operator==(const Tuning& a, const Tuning& b) {

@@ -193,7 +193,7 @@ def _shift(what: str, before: Side, after: Side, pair: Tuple[Kind, Kind],
         return None
     period = SECOND_NS * before.duration / before.all.events(pairs[0][0])
     least = (max(_LEAST_OF_GAP_S * SECOND_NS, _LEAST_OF_PERIOD * period) if what == GAP
-             else before.model.tuning.least_effect_on_delay(period))
+             else SECOND_NS * before.model.tuning.get('least_effect'))
     change = Change(what, pair[1], None if what == GAP else pair[0], first, second,
                     SECOND_NS * abs(second - first) / max(least, 1.0))
     return _Candidate(change, *(_measured_share(side, ids, edges[len(edges) // 2])

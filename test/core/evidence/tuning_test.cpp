@@ -68,8 +68,6 @@ TEST(EvidenceTuning, EveryNumberHasAMeaningAndADefaultWithinItsRange) {
 TEST(EvidenceTuning, WhatIsOutOfItsRangeIsRefusedInWords) {
   EXPECT_EQ(errorOfSetting("least_effect", -0.001),
             "least_effect must be from 0 to 1000 s, not -0.001");
-  EXPECT_EQ(errorOfSetting("least_effect_of_period", 1),
-            "least_effect_of_period must be from 0 to 0.99, not 1");
   for (const double wrong :
        {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
         std::numeric_limits<double>::quiet_NaN()}) {

@@ -25,8 +25,8 @@ LABELS = {'overdue': 'overdue', 'slower': 'pace', 'faster': 'pace', 'pairs': 'pa
 RARE_MISSES = 0.02
 
 USUAL = 0.9
-LEAST_EFFECT = (5e6, 0.02)  # on delays, by default: [ns], and the share of the period
-LEAST_SUM = 8.0
+LEAST_EFFECT = 5e6  # on delays, by default [ns]
+LEAST_SUM = 9.0
 OTHER_PACES = {'slower': {2: 1 / 2, 4: 1 / 2},
                'faster': {2: 1 / 3, 4: 1 / 3, **{bins: 1 / 132 for bins in range(5, 49)}}}
 """Their shares, by how many bins gaps are longer or shorter."""
@@ -234,11 +234,11 @@ class ReferenceModel:
         tracks: what is watched.
         first, second: counts of the two halves of the training.
         both: counts of all of it.
-        least_effect: on delays, [ns] and the share of the period.
+        least_effect: on delays [ns].
     """
 
     def __init__(self, tracks: Sequence[Track], first: Counts, second: Counts, both: Counts,
-                 least_effect: Tuple[float, float] = LEAST_EFFECT) -> None:
+                 least_effect: float = LEAST_EFFECT) -> None:
         self.tracks = tracks
         self.both = both
         self.types = both.types
@@ -261,8 +261,7 @@ class ReferenceModel:
         """Return whether a delay differs by little from the usual ones."""
         first, last = usual_bins(self.both.delays[e_i, e_j])
         period = self.both.mean_gap(e_i)
-        in_ns, of_period = self._least_effect
-        effect = max(in_ns, of_period * period)
+        effect = self._least_effect
         return any(lower_edge(first) - effect <= delay + turn <= lower_edge(last + 1) + effect
                    for turn in (-period, 0.0, period))
 

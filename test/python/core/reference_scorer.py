@@ -149,12 +149,21 @@ class ReferenceScorer:
             if track[0] in ('deadlines', 'company'):
                 if track[1] == kind:
                     self._requests[track] = []
-                if track[2] == kind and not self._has_waited(t):  # never a mode
+                if (track[2] == kind and not self._has_waited(t)  # never a mode
+                        and not self._may_be_answered(t, track)):
                     self._requests[track].append(t)
         if own is not None and t - own[0] > GONE_GAPS * self._model.longest[kind]:
             for track, watch in self._watches.items():
                 if kind in track[1:]:
                     watch.disarm()
+
+    def _may_be_answered(self, t: int, track: Track) -> bool:
+        """Return whether the answer to a request may have come before it."""
+        channel, to, other = track
+        last = self._last.get(to)
+        return (channel == 'deadlines' and last is not None
+                and not self._model.counts_requests(track)
+                and t - last[0] < int(SECOND * self._model.both.usual_delay(other, to, 0.95)))
 
     def _add_gap(self, watch: Watch, gap: int, track: Track, waited: bool) -> None:
         step = self._model.step(track, gap)
@@ -238,7 +247,8 @@ class ReferenceScorer:
         if channel in ('deadlines', 'company'):
             started = self._start is not None and end - self._start >= START_TIME
             requests = self._requests[track]
-            if not requests or (last is None and not started):
+            owes = last is not None or (channel == 'company' and started)
+            if not requests or not owes:
                 return 0.0
             return (float(len(requests))
                     if channel == 'company' or self._model.counts_requests(track)

@@ -32,10 +32,9 @@ struct Tuning {
 
   // The evidence of gaps and delays.
   double least_told = 100;
-  double least_sum = 8;
+  double least_sum = 9;
   double usual = 0.9;
   double least_effect = 0.005;
-  double least_effect_of_period = 0.02;
   double most_of_limit = 1.5;
   double arming_events = 30;
   double gone_gaps = 5;
@@ -85,9 +84,6 @@ struct Tuning {
 
   /// @throw std::invalid_argument names what is out of its range
   void validate() const;
-  /// Least effect on the delay from one event type to another [ns] (docs/method.md, section 3.5).
-  /// @param period mean gap of the one that the delay counts from [ns]
-  double leastEffectOnDelay(double period) const;
   /// Whether so many delays of training say what is usual: each speaks against another one by half
   /// of log 2, or more.
   bool areEnough(std::uint64_t delays) const {

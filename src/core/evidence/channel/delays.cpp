@@ -122,8 +122,8 @@ DelaySteps::DelaySteps(const Model& model, EventId from, EventId to)
   const Tuning& tuning = model.tuning();
   const DelayHistogram delays = model.learned().delays(from, to);
   const DelayHistogram::Bins usual = delays.middle(tuning.usual);
-  shortest_ = lowerEdge(usual.first) - tuning.leastEffectOnDelay(period_);
-  longest_ = upperEdge(usual.last) + tuning.leastEffectOnDelay(period_);
+  shortest_ = lowerEdge(usual.first) - 1e9 * tuning.least_effect;
+  longest_ = upperEdge(usual.last) + 1e9 * tuning.least_effect;
   // Another delay is any that is possible before the next `from`, each bin as probable.
   const std::size_t last = std::max(usual.last, log_bins::bin(static_cast<std::int64_t>(period_)));
   const ByBin all = delays.probabilities();

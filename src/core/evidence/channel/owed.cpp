@@ -79,7 +79,7 @@ class OwedState : public ChannelState {
   explicit OwedState(const ExpectedAnswers& expected);
 
   bool listens() const override { return !owed_.empty(); }
-  void add(const Heard::Arrival& arrival, const Heard& /*heard*/) override {
+  void add(const Heard::Arrival& arrival, const Heard& heard) override {
     for (const std::uint32_t number : asks_[arrival.id].answered) {
       owed_[number].requests = 0;
     }
@@ -88,6 +88,11 @@ class OwedState : public ChannelState {
     }
     for (const std::uint32_t number : asks_[arrival.id].asked) {
       Answer& answer = owed_[number];
+      // Two that answer to the same come in any order: what it asks for may have come before it.
+      const std::optional<std::int64_t> answered = heard.lastSeen(answer.to);
+      if (answered && arrival.stamp - *answered < answer.usual) {
+        continue;
+      }
       answer.since = answer.requests > 0 ? answer.since : arrival.stamp;
       ++answer.requests;
     }
@@ -107,7 +112,9 @@ class OwedState : public ChannelState {
  private:
   struct Answer {
     std::size_t track = 0;
+    EventId to = 0;
     bool in_requests = false;    // else in seconds
+    std::int64_t usual = 0;      // a usual answer takes no longer [ns]; 0: in requests
     std::uint32_t requests = 0;  // without an answer
     std::int64_t since = 0;      // stamp of the first of them [ns], if there is one
   };
@@ -138,16 +145,19 @@ OwedState::OwedState(const ExpectedAnswers& expected)
     : model_(expected.model()), asks_(model_.size()) {
   for (const std::size_t track : expected.tracks()) {
     const auto number = static_cast<std::uint32_t>(owed_.size());
-    asks_[model_.tracks()[track].from].asked.push_back(number);
-    asks_[model_.tracks()[track].to].answered.push_back(number);
-    owed_.push_back({track, expected.countsRequests(track), 0, 0});
+    const auto [channel, to, from] = model_.tracks()[track];
+    asks_[from].asked.push_back(number);
+    asks_[to].answered.push_back(number);
+    const bool in_requests = expected.countsRequests(track);
+    const double usual = in_requests ? 0 : model_.usualDelay(from, to, (1 + kUsualAnswers) / 2);
+    owed_.push_back({track, to, in_requests, static_cast<std::int64_t>(usual), 0, 0});
   }
 }
 
 void OwedState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
   for (const Answer& answer : owed_) {
     // Who was never heard is NeverHeard's matter.
-    const bool owes = answer.requests > 0 && heard.hasSeen(model_.tracks()[answer.track].to);
+    const bool owes = answer.requests > 0 && heard.hasSeen(answer.to);
     evidence[answer.track] = owes ? waiting(answer, heard) : 0;
   }
 }

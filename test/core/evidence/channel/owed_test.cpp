@@ -125,6 +125,16 @@ TEST_F(OwedTest, ARequestThatTheNextOneOvertakesIsNoneWithoutAnAnswer) {
   EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_lateness);
 }
 
+TEST_F(OwedTest, WhatComesRightAfterAnAnswerMayHaveItAlready) {
+  // A and B may both answer to another one, and come now in this order, now in that.
+  learn(8 * kSecond);
+  scorer_->add({0, kB});
+  scorer_->add({500 * kMillisecond, kA});
+  EXPECT_EQ(evidenceAt(10 * kSecond), 0);
+  scorer_->add({11 * kSecond, kA});
+  EXPECT_DOUBLE_EQ(evidenceAt(12 * kSecond), 1) << "the next one has none";
+}
+
 TEST_F(OwedTest, WhoeverAnswersSoonestIsAskedFirst) {
   // B answers to A at once, and to C only by chance: with room for one, it owes A.
   Tuning tuning;
