@@ -113,17 +113,13 @@ class BadRecordingsError(BagError):
 
 @dataclass
 class Named:
-    """The recordings that were named.
+    """The recordings that were named."""
 
-    Args:
-        parts: those that can be used, as far as the ends of the files show it.
-        bad: a line for each that cannot: the file, what it is, and what mends it.
-        told: lines about bags that are one recording.
-    """
-
+    # Those that can be used, as far as the ends of the files show it.
     parts: List[BagPart] = field(default_factory=list)
+    # A line for each that cannot: the file, what it is, and what mends it.
     bad: List[str] = field(default_factory=list)
-    told: List[str] = field(default_factory=list)
+    told: List[str] = field(default_factory=list)  # lines about bags that are one recording
 
     def check(self, skip_bad: bool = False) -> None:
         """Check that none is bad; or, if these are left out, that there is another one.

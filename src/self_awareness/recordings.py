@@ -35,15 +35,10 @@ def _first_after(stamps: np.ndarray,
 
 @dataclass(frozen=True)
 class ClockStep:
-    """The clock was set.
+    """The clock was set."""
 
-    Args:
-        at_s: when the next event came, from the recording's first message [s].
-        by_s: by how much, and the usual delay [s]; negative: back.
-    """
-
-    at_s: float
-    by_s: float
+    at_s: float  # when the next event came, from the recording's first message [s]
+    by_s: float  # by how much, and the usual delay [s]; negative: back
 
     def __str__(self) -> str:
         way = 'forward' if self.by_s > 0 else 'back'
@@ -338,16 +333,11 @@ def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -
 
 
 class Unknown(NamedTuple):
-    """Event types that a model does not know: the number of their events and the name of each.
+    """Event types that a model does not know: the number of their events and the name of each."""
 
-    Args:
-        new: training knows them in no way: nobody published them.
-        modes: of the robot, that training never saw.
-        unheard: they were published in training, and nobody subscribed to them.
-    """
-
-    new: List[Tuple[int, str]]
-    modes: List[Tuple[int, str]]
+    new: List[Tuple[int, str]]  # training knows them in no way: nobody published them
+    modes: List[Tuple[int, str]]  # of the robot, that training never saw
+    # They were published in training, and nobody subscribed to them.
     unheard: List[Tuple[int, str]]
 
 

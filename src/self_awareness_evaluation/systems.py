@@ -206,8 +206,7 @@ class Peer:
 
     def __init__(self, key: Callable[[EventType], Hashable]) -> None:
         self._key = key
-        self.bounds: Dict[Hashable, Any] = {}
-        """By topic or event type; one without is not watched."""
+        self.bounds: Dict[Hashable, Any] = {}  # by topic or event type; one without is not watched
         self._sources: Dict[Hashable, Dict[str, None]] = {}
         """By topic or event type, in the order of their coming."""
         self._last: Optional[Tuple[WindowedEvents, np.ndarray]] = None

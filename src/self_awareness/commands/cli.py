@@ -210,8 +210,7 @@ def _number(text: str) -> float:
         return math.nan
 
 
-budget = above_zero('false alarms an hour')
-"""Argument type: how many false alarms limits allow."""
+budget = above_zero('false alarms an hour')  # argument type: how many false alarms limits allow
 
 
 def checked(parse: Callable[[str], _Value]) -> Callable[[str], _Value]:
@@ -234,8 +233,7 @@ def ends_in(*endings: str) -> Callable[[str], str]:
     return check
 
 
-plot_file = ends_in('.png', '.pdf', '.svg')
-"""Argument type: the name of a picture."""
+plot_file = ends_in('.png', '.pdf', '.svg')  # argument type: the name of a picture
 page_file = ends_in('.html')
 """Argument type: the name of a page; no browser would open another one."""
 

@@ -18,23 +18,18 @@ _HEADER = """\
 _VERSION = 'version'
 """Key of what the file says of its version (docs/monitor.md); no topic is called so."""
 
-_HOSTS = 'hosts'
-"""Key of the computers of nodes; no topic is called so either."""
+_HOSTS = 'hosts'  # key of the computers of nodes; no topic is called so either
 
 _MOST_FORMAT = (1 << 32) - 1
 
 
 @dataclass
 class RobotGraph:
-    """Who publishes and who subscribes to what, by topic; nodes by their full names.
-
-    Args:
-        publishers, subscribers: by topic.
-        hosts: computers of nodes, by their names or addresses; those that are known.
-    """
+    """Who publishes and who subscribes to what, by topic; nodes by their full names."""
 
     publishers: _Nodes = field(default_factory=dict)
     subscribers: _Nodes = field(default_factory=dict)
+    # Computers of nodes, by their names or addresses; those that are known.
     hosts: Dict[str, str] = field(default_factory=dict)
 
     def add(self, other: RobotGraph) -> bool:
