@@ -74,9 +74,7 @@ def _train(arguments: argparse.Namespace) -> None:
         if counting.encoding is None and model.encoding.source == 'none':
             print('no bag names the senders of its messages: sources are not told apart '
                   '(source: none)')
-        model.graph = model.graph | graph.edges(model.encoding)
-        model.hosts = graph.hosts_of_sources(model.encoding)
-        model.unheard = graph.unheard(model.encoding)
+        graph.add_to(model, model.encoding)
         try:
             if model.detectors != PAPER:
                 many_bags.preliminary_limits(trained, workers)

@@ -217,9 +217,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
         model = learner.model(watch=False)
         graph = (RobotGraph.beside(part.files) if summary.encoding is None  # no event log
                  else RobotGraph(*summary.graph))
-        model.graph = graph.edges(encoding)
-        model.hosts = graph.hosts_of_sources(encoding)
-        model.unheard = graph.unheard(encoding)
+        graph.add_to(model, encoding)
         model.add_subscriptions(lasting_subscriptions(summary, encoding))
     except BagError as error:
         raise _BadBag(str(error)) from error

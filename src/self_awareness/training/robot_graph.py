@@ -5,8 +5,8 @@ import os
 from dataclasses import dataclass, field
 from typing import Dict, Iterable, Set, Tuple
 
-from self_awareness import (EncodingRules, FileVersion, resolved_name, unheard_publications,
-                            yaml_file)
+from self_awareness import (EncodingRules, FileVersion, TrainedModel, resolved_name,
+                            unheard_publications, yaml_file)
 from self_awareness.output_files import replacing
 from self_awareness.yaml_section import Section
 
@@ -65,6 +65,12 @@ class RobotGraph:
     def unheard(self, encoding: EncodingRules) -> Set[Tuple[str, str]]:
         """Return what no node of the robot subscribes to, as in TrainedModel.unheard."""
         return unheard_publications(encoding, self.publishers, self.subscribers)
+
+    def add_to(self, model: TrainedModel, encoding: EncodingRules) -> None:
+        """Let a model know it, too, by the names that the encoding gives."""
+        model.graph = model.graph | self.edges(encoding)
+        model.hosts = self.hosts_of_sources(encoding)
+        model.unheard = self.unheard(encoding)
 
     def save(self, path: str) -> None:
         """Write a file that load() reads."""
