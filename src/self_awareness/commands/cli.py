@@ -13,8 +13,8 @@ from typing import Any, Callable, Iterable, List, NoReturn, Optional, Sequence, 
 
 import rosgraph
 
-from self_awareness import (SHORTEST_WINDOW, VERSION, BagError, DetectorParameters, ModelFileError,
-                            TrainedModel, UnknownEvents, printable, recordings)
+from self_awareness import (VERSION, BagError, DetectorParameters, ModelFileError, TrainedModel,
+                            UnknownEvents, printable, recordings)
 from self_awareness.parts import BadRecordingsError, BagPart, Named
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
@@ -164,16 +164,6 @@ def seconds(text: str, low: float = 0.0) -> int:
         raise argparse.ArgumentTypeError(f'expected seconds from {low:g} to {_LONGEST_S:g}, '
                                          f'not {text!r}')
     return nanoseconds(value)
-
-
-def duration(text: str) -> int:
-    """Argument type: a time in seconds, from a nanosecond to a day, as nanoseconds."""
-    return seconds(text, 1e-9)
-
-
-def window(text: str) -> int:
-    """Argument type: the length of a window in seconds, as nanoseconds."""
-    return seconds(text, SHORTEST_WINDOW / SECOND_NS)
 
 
 def offset(text: str) -> float:

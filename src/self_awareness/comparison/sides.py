@@ -78,7 +78,7 @@ def key_of(kind: EventType) -> Kind:
     return kind.source, kind.scope, kind.type
 
 
-def read_sides(before: str, after: str, skip_bad: bool = False) -> Tuple[Side, Side, List[str]]:
+def read_sides(before: str, after: str, skip_bad: bool) -> Tuple[Side, Side, List[str]]:
     """Return the two sides; recordings are counted with the encoding of the model.
 
     Args:
