@@ -1,4 +1,4 @@
-"""The commands `live`, `soak` and `recovery` of `evaluate`: a plan and a page each."""
+"""The commands `live`, `nodes`, `soak` and `recovery` of `evaluate`: a plan and a page each."""
 from __future__ import annotations
 
 import argparse
@@ -20,13 +20,24 @@ RELIABILITY = 'reliability/README.md'  # the page of soak and recovery, in the f
 
 
 def add(parts: Any) -> None:
-    """Add the three commands to the subparsers of `evaluate`."""
+    """Add the four commands to the subparsers of `evaluate`."""
     live = parts.add_parser(
         'live', help='the follow-me robot as 15 processes, and the monitor',
         description='Starts master and robot, records, trains and calibrates, starts the monitor, '
         'and induces fault after fault in rounds; a round takes about 5 minutes.')
     options.add(live, '--rounds', cli.count, 5, 'N', 'how often each fault is induced')
     _add_session(live, 'live', Learning(3, 60.0, 1, 240.0))
+
+    nodes = parts.add_parser(
+        'nodes', help='a system of nodes of Debian packages, and the monitor',
+        description='Starts the nodes several times and records them, trains and calibrates, '
+        'starts them once more, with the monitor, watches them undisturbed, and then breaks one '
+        'after the other; with the default options, this takes an hour and a half. '
+        'scripts/packaged_nodes_env.sh installs the nodes and runs this.')
+    _add_minutes(nodes, '--minutes', 60.0, 'normal operation that is watched')
+    _add_minutes(nodes, '--burst-minutes', 20.0,
+                 'the same after that, beside short bursts of foreign load')
+    _add_session(nodes, 'nodes', Learning(3, 150.0, 1, 250.0))
 
     soak = parts.add_parser(
         'soak', help='the follow-me robot at 10 times its speed, and the monitor, for an hour',
@@ -70,6 +81,7 @@ def _run(arguments: argparse.Namespace, command: str) -> None:
     from self_awareness_evaluation.live import plans, session
     from self_awareness_evaluation.live.processes import own_master
     planned, told = {'live': (plans.live, of_faults),
+                     'nodes': (plans.nodes, of_faults),
                      'soak': (plans.soak, of_soak),
                      'recovery': (plans.with_recovery, of_recovery)}[arguments.name]
     path = (arguments.output / arguments.page).with_name(f'{arguments.name}.csv')

@@ -17,10 +17,11 @@ from self_awareness.recovery import history
 from self_awareness.recovery.ladder import SHORTEST_HEALING_S
 from self_awareness.recovery.node_process import process_of
 from self_awareness_evaluation.live.follow_me import FollowMe
+from self_awareness_evaluation.live.packaged import FAULTS, PackagedSystem
 from self_awareness_evaluation.live.processes import Processes, becomes_true
 from self_awareness_evaluation.live.rows import (AT_RANDOM, CRASH, DELAY_S, HANG, HANGS, RESTARTED,
                                                  Row)
-from self_awareness_evaluation.live.session import BAGS, EVENTS, Plan, Step, TopicListener
+from self_awareness_evaluation.live.session import BAGS, EVENTS, Plan, Step, TopicListener, bursts
 from self_awareness_evaluation.records import NORMAL, Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
 from self_awareness_follow_me.induction import process_id
@@ -33,6 +34,10 @@ FAULTS_S: Dict[str, float] = {
 """Of `live`: how long each fault lasts in a round [s], in their order; the last one ends the
 robot."""
 
+UNDISTURBED = 'undisturbed'
+BURSTS = 'undisturbed, but for short bursts of foreign load'
+"""Of `nodes`: the names of normal operation."""
+
 SPEED = 10.0  # of `soak` and `recovery`: of the robot, in its usual one
 
 SHORT_S, LONG_S = (0.2, 1.5), (4.0, 12.0)
@@ -41,7 +46,9 @@ faults [s]."""
 
 PAUSE_S = (5.0, 20.0)  # at random: least and most of normal operation between two faults [s]
 _BUDGET = 0.1  # of the soak: false alarms an hour that the limits allow
-_QUIET_WITHIN_S = 90.0
+_PIECE_S = 600.0  # of normal operation, so that little is lost if the session fails
+_QUIET_S, _QUIET_WITHIN_S = 10.0, 60.0  # after a fault of the packaged nodes
+_AT_RANDOM_QUIET_WITHIN_S = 90.0
 _SHARE_OF_SHORT = 0.15
 _VICTIM = 'player'
 _BACK_WITHIN_S = 60.0
@@ -75,11 +82,33 @@ def live(given: argparse.Namespace, learning: Learning, _: Path, processes: Proc
     return Plan(robot, BAGS, learning, steps(), AFTERMATH_S, 0.0)
 
 
+def nodes(given: argparse.Namespace, learning: Learning, folder: Path,
+          processes: Processes) -> Plan:
+    """Return the plan of `evaluate nodes`: undisturbed, with bursts, and fault after fault."""
+    system = PackagedSystem(folder, processes)
+
+    def steps() -> Iterator[Step]:
+        for length_s in _pieces(60.0 * given.minutes):
+            yield Step(UNDISTURBED, length_s, is_normal=True)
+        chance = random.Random(1)
+        for length_s in _pieces(60.0 * given.burst_minutes):
+            yield Step(BURSTS, length_s, broken=partial(bursts, chance),
+                       is_normal=True)
+        for kind, node, lasts_s in FAULTS:
+            yield Step(kind, lasts_s, (f'/{node}',) if node else (),
+                       partial(system.broken, kind, node), reset=True)
+
+    # An operator looks on, with tools that training did not see.
+    return Plan(system, BAGS, learning, steps(), _QUIET_S, _QUIET_WITHIN_S, beside=[
+        ['rosbag', 'record', '--all', '--output-name', str(folder / 'operator')],
+        ['rostopic', 'echo', '/diagnostics']])
+
+
 def soak(given: argparse.Namespace, learning: Learning, _: Path, processes: Processes) -> Plan:
     """Return the plan of `evaluate soak`: faults at random."""
     robot = FollowMe(processes, given.seed, SPEED)
     return Plan(robot, EVENTS, learning, _at_random(robot, given), AFTERMATH_S,
-                _QUIET_WITHIN_S, _BUDGET)
+                _AT_RANDOM_QUIET_WITHIN_S, _BUDGET)
 
 
 def with_recovery(given: argparse.Namespace, learning: Learning, folder: Path,
@@ -96,7 +125,7 @@ def with_recovery(given: argparse.Namespace, learning: Learning, folder: Path,
 
     restarts = RestartListener()
     command = _recovery_command(folder / 'rules.yaml', list(robot.topics))
-    return Plan(robot, EVENTS, learning, steps(), HEALED_S, _QUIET_WITHIN_S,
+    return Plan(robot, EVENTS, learning, steps(), HEALED_S, _AT_RANDOM_QUIET_WITHIN_S,
                 beside=[command], also=restarts.rows)
 
 
@@ -128,6 +157,12 @@ def _at_random(robot: FollowMe, given: argparse.Namespace, number: int = 1,
         yield Step(NORMAL, after_s, is_normal=True, round=number)
         yield Step(name, min(lasts_s, crash_s) if name.startswith(CRASH) else lasts_s,
                    robot.culprits(name), partial(robot.broken, name), round=number)
+
+
+def _pieces(length_s: float) -> Iterator[float]:
+    while length_s > 0.0:
+        yield min(length_s, _PIECE_S)
+        length_s -= _PIECE_S
 
 
 def _recovery_command(rules: Path, components: Sequence[str]) -> List[str]:

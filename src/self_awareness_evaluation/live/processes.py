@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Callable, Iterator, List, Sequence
 
 import rosgraph
+import rosnode
 import rospy
 
 from self_awareness import progress
@@ -145,3 +146,19 @@ def own_master(folder: Path, node: str, pinned: Sequence[str] = ()) -> Iterator[
             yield processes
         finally:
             rospy.signal_shutdown('the session is over')
+
+
+def unregister(ended: Sequence[str]) -> None:
+    """Take back what nodes that have ended left at the master.
+
+    When such a node is started again, the master has the one before shut down, at a port that
+    another node may have by then.
+
+    Raises:
+        LiveError: the master does not answer.
+    """
+    try:
+        left = sorted(set(rosnode.get_node_names()) & set(ended))
+        rosnode.cleanup_master_blacklist(rosgraph.Master('/evaluate'), left)
+    except (rosnode.ROSNodeException, rosgraph.MasterException, OSError) as error:
+        raise LiveError(f'the master does not answer any more: {error}') from error

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import random
 import signal
 import threading
 import time
@@ -25,6 +26,8 @@ from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, LiveErro
 from self_awareness_evaluation.live.rows import ERROR, Row, Status, measure
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
+from self_awareness_follow_me import induction
+from self_awareness_follow_me.effects import Starvation
 from self_awareness_follow_me.induction import process_id
 
 APART_S = 70.0
@@ -37,6 +40,12 @@ _TRAINING, _CALIBRATION, _MODEL = 'training', 'calibration', 'learned.model'  # 
 _WITHIN_S = 900.0
 _STATUS_WITHIN_S = 5.0  # of the last window of a stretch
 _CLOCK_STEP_S = 0.05  # a clock that moved by more than this was set
+
+_BURST_S = (0.2, 1.5)  # at least and at most
+_BETWEEN_BURSTS_S = 20.0  # on the average
+
+BUSY = Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)
+"""Four busy processes on every core take the machine."""
 
 MONITOR = '/self_awareness'  # the monitor's node
 
@@ -65,6 +74,25 @@ def stopped(pid: int) -> Iterator[float]:
     finally:
         with contextlib.suppress(ProcessLookupError):  # it was killed, as it hung
             os.kill(pid, signal.SIGCONT)
+
+
+@contextlib.contextmanager
+def bursts(chance: random.Random) -> Iterator[float]:
+    """Let busy processes on all cores take the machine for a moment now and then."""
+    over = threading.Event()
+
+    def take() -> None:
+        while not over.wait(chance.expovariate(1.0 / _BETWEEN_BURSTS_S)):
+            with induction.starved(BUSY):
+                over.wait(chance.uniform(*_BURST_S))
+
+    thread = threading.Thread(target=take)
+    thread.start()
+    try:
+        yield time.time()
+    finally:
+        over.set()
+        thread.join()
 
 
 class System(Protocol):

@@ -5,18 +5,24 @@ import contextlib
 import itertools
 import time
 from pathlib import Path
-from typing import Any, Iterator, List
+from typing import Any, Iterator, List, Set
 
 import numpy as np
 import pytest
+import rosbag
+import rosgraph
+import rosnode
 
-from self_awareness_evaluation.live import plans, session
+from self_awareness_evaluation.live import packaged, plans, session
 from self_awareness_evaluation.live.follow_me import FollowMe
-from self_awareness_evaluation.live.processes import LiveError, Processes, await_condition
+from self_awareness_evaluation.live.packaged import CAMERAS_HZ, FAULTS, HALF_RATE, NODES
+from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
+                                                      free_port, unregister)
 from self_awareness_evaluation.live.rows import CRASH, DOUBLE, ERROR, HALF, HANG, Status
 from self_awareness_evaluation.live.session import Plan, Step, used
 from self_awareness_evaluation.records import Learning
 
+PAGES = Path(__file__).resolve().parents[3] / 'docs' / 'evaluation'
 LEARNING = Learning(1, 60.0, 1, 60.0)
 
 
@@ -33,6 +39,27 @@ def test_faults_are_those_of_the_seed() -> None:
         assert plans.PAUSE_S[0] <= after_s <= plans.PAUSE_S[1]
         assert robot.culprits(name) == (f'/{name.partition(":")[2]}',)
     assert 10 < sum(lasts_s < 2.0 for _, _, lasts_s in drawn[0]) < 100
+
+
+def test_names_are_unique_and_faults_are_of_nodes() -> None:
+    page = (PAGES / 'README.md').read_text(encoding='utf-8')
+    names = [node.name for node in NODES]
+    assert len(set(names)) == len(names)
+    assert {node.manager for node in NODES if node.manager} <= set(names)
+    assert f'{len(NODES)} nodes of Debian packages' in page
+    for kind, node, _ in FAULTS:
+        assert not node or node in names
+        if kind == HALF_RATE:
+            assert node in CAMERAS_HZ, 'others have no rate that can be set'
+
+
+def test_what_drivers_replay_is_made(tmp_path: Path) -> None:
+    packaged.write_drivers(tmp_path)
+    for node in NODES:
+        assert not node.file or (tmp_path / node.file).exists()
+        if node.package == 'rosbag':
+            with rosbag.Bag(str(tmp_path / node.file)) as bag:
+                assert set(bag.get_type_and_topic_info().topics) == set(node.topics)
 
 
 class Monitor:
@@ -115,6 +142,9 @@ def test_nobody_waits_where_the_plan_does_not_say_so(monitor: Monitor) -> None:
     assert steps.take(Step('normal', 0.1, is_normal=True)).onset >= begin
 
 
+STARTED_WITHIN_S = 60.0
+
+
 def test_processes_are_ended_and_failures_are_told(tmp_path: Path) -> None:
     with Processes(tmp_path) as processes:
         asleep = processes.start('asleep', 'sleep', '1000')
@@ -127,3 +157,30 @@ def test_processes_are_ended_and_failures_are_told(tmp_path: Path) -> None:
         await_condition('a wonder', lambda: False, 0.0)
     with pytest.raises(LiveError, match=f'process {asleep.pid} has ended'):
         used(asleep.pid)
+
+
+def nodes() -> Set[str]:
+    """Return the names of those that publish, subscribe or serve, but for roscore's own."""
+    return set(rosnode.get_node_names()) - {'/rosout'}
+
+
+def test_who_ended_without_unregistering_is_unknown_to_the_master(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    port = free_port()
+    monkeypatch.setenv('ROS_MASTER_URI', f'http://127.0.0.1:{port}')
+    monkeypatch.setenv('ROS_LOG_DIR', str(tmp_path))
+    with Processes(tmp_path) as processes:
+        processes.start('roscore', 'roscore', '-p', str(port))
+        await_condition('the master answers', rosgraph.is_master_online, STARTED_WITHIN_S)
+        for number, name in enumerate(('/camera', '/lidar', '/lidar_driver')):
+            gone = f'http://127.0.0.1:{number + 1}'
+            node = rosgraph.Master(name)
+            node.registerPublisher(f'{name}/out', 'std_msgs/String', gone)
+            node.registerSubscriber('/tf', 'std_msgs/String', gone)
+            node.registerService(f'{name}/get_loggers', f'rosrpc://127.0.0.1:{number + 1}', gone)
+        assert nodes() == {'/camera', '/lidar', '/lidar_driver'}
+
+        unregister(['/lidar', '/never_there'])
+        assert nodes() == {'/camera', '/lidar_driver'}
+    with pytest.raises(LiveError, match='the master does not answer any more'):
+        unregister(['/camera'])
