@@ -123,7 +123,7 @@ def _evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
     verdicts = evidence_judge(trained, DetectorParameters())(RecordingEvents(
         recording.event_types, recording.stamps, recording.ids, recording.end,
         attributes=recording.attributes))
-    judged = judged_of(verdicts, recording.event_types)
+    judged = judged_of(verdicts, recording.event_types, trained.graph)
     return JudgedCase(judged.alarms, judged.suspicions, recording.origin, recording.end,
                       len(watched))
 
@@ -187,4 +187,4 @@ def case_rows(subject: Subject, case: Case, judged: JudgedCase) -> Iterator[Row]
     row = Row(subject, OUTAGE, watched=judged.watched,
               stood_before=any(alarm.stands_at(onset) for alarm in judged.alarms),
               latency_s=None if found is None else (found.start - onset) / SECOND_NS)
-    yield at_end(row, [*judged.alarms, *judged.suspicions], relief)
+    yield at_end(row, [*judged.alarms, *judged.suspicions], onset, relief)

@@ -11,15 +11,16 @@ import os
 import random
 import tempfile
 from functools import partial
-from typing import Dict, List, Optional, Sequence, Set, Tuple
+from typing import Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness import EncodingRules, read_events
-from self_awareness.commands import simulate as simulate_command
 from self_awareness.stamps import nanoseconds
 from self_awareness_evaluation.records import (NORMAL, FaultRecord, Learning, Robot, Subscriptions,
                                                WindowedEvents)
+from self_awareness_follow_me.component_spec import ComponentSpec
+from self_awareness_follow_me.effects import Change
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import Scenario, load_scenario
 from self_awareness_follow_me.simulation import START_S, InducedFault, simulate
@@ -79,7 +80,9 @@ def own(seed: int, faults: Sequence[str]) -> Robot:
 
 def graph_of(scenario: Scenario) -> Set[Tuple[str, str, str]]:
     """Return publisher, topic and subscriber of all that components hear of each other."""
-    return simulate_command.graph_of(scenario, None).edges(EncodingRules())
+    return {(f'/{publisher.name}', f'/{topic}', f'/{listener.name}')
+            for publisher in scenario.components for listener in scenario.components
+            for topic in set(publisher.outputs()) & set(listener.inputs())}
 
 
 def normal_record(scenario: Scenario, seed: int, name: str, duration_s: float) -> WindowedEvents:
@@ -120,12 +123,15 @@ def _recorded(scenario: Scenario, seed: int, duration_s: float,
 def _subscriptions(scenario: Scenario, start_s: float, fault: Optional[InducedFault]
                    ) -> Sequence[Tuple[int, Subscriptions]]:
     """Return what nodes subscribe to, from the start on, and from the onset of a fault on."""
-    before, after = (frozenset((node, topic) for topic, nodes in
-                               simulate_command.graph_of(scenario, each).subscribers.items()
-                               for node in nodes) for each in (None, fault))
-    found = [(nanoseconds(start_s), before)]
-    if fault is not None and after != before:
-        found.append((nanoseconds(start_s + fault.onset_s), after))
+    def since(begin_s: float, specs: Iterable[ComponentSpec]) -> Tuple[int, Subscriptions]:
+        return nanoseconds(begin_s), frozenset((f'/{spec.name}', f'/{topic}') for spec in specs
+                                               for topic in spec.inputs())
+
+    found = [since(start_s, scenario.components)]
+    if fault is not None:
+        effect = effect_of(scenario, fault.kind)
+        if isinstance(effect, Change):
+            found.append(since(start_s + fault.onset_s, map(effect.changed, scenario.components)))
     return found
 
 

@@ -35,7 +35,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 def _simulate(arguments: argparse.Namespace) -> None:
     scenario = load_scenario(arguments.scenario)
     fault = _fault(arguments.fault, arguments.duration)
-    graph = graph_of(scenario, fault)
+    graph = _graph(scenario, fault)
     bags = _bags(arguments.output, arguments.runs, arguments.seed, fault)
     with progress.items(int(arguments.duration) * arguments.runs, 'simulating') as seconds_done:
         for seed, bag in bags:
@@ -45,7 +45,7 @@ def _simulate(arguments: argparse.Namespace) -> None:
             progress.say(str(bag))
 
 
-def graph_of(scenario: Scenario, fault: Optional[InducedFault]) -> RobotGraph:
+def _graph(scenario: Scenario, fault: Optional[InducedFault]) -> RobotGraph:
     """Return who publishes and subscribes to what, once the fault is there."""
     effect = None if fault is None else effect_of(scenario, fault.kind)
     graph = RobotGraph()

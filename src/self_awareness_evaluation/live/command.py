@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import signal
 import tempfile
 import time
 from pathlib import Path
-from typing import Any, List, Sequence
+from typing import Any, Iterator, List, Optional, Sequence
 
 from self_awareness import progress
 from self_awareness.commands import cli
@@ -97,12 +98,9 @@ def _run(arguments: argparse.Namespace, command: str) -> None:
         # A termination cleans up like Ctrl-C, which shells let be ignored in the background.
         signal.signal(number, signal.default_int_handler)
     path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = (arguments.recordings or Path(temporary)).resolve()
-        folder.mkdir(parents=True, exist_ok=True)
-        with own_master(folder, 'evaluate') as processes:
-            session.run(planned(arguments, arguments.learning, folder, processes), folder,
-                        processes, keep)
+    with _folder(arguments.recordings) as folder, own_master(folder, 'evaluate') as processes:
+        session.run(planned(arguments, arguments.learning, folder, processes), folder,
+                    processes, keep)
     print(f'written: {path}')
     write(arguments, command, rows, *told(rows))
 
@@ -128,3 +126,14 @@ def write(arguments: argparse.Namespace, command: str, rows: Sequence[Row], line
     print(f'written: {path}')
     if wrong:
         raise ValueError('; '.join(wrong))
+
+
+@contextlib.contextmanager
+def _folder(given: Optional[Path]) -> Iterator[Path]:
+    """Return the folder for recordings and logs; a temporary one is removed at the end."""
+    if given is None:
+        with tempfile.TemporaryDirectory() as temporary:
+            yield Path(temporary)
+    else:
+        given.mkdir(parents=True, exist_ok=True)
+        yield given.resolve()

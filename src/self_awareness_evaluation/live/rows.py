@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from statistics import median, median_low
-from typing import Iterator, List, Optional, Sequence, Tuple
+from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -49,12 +49,23 @@ class Status:
     suspects: Tuple[str, ...] = ()  # sources, the most likely first, each once
     message: str = ''  # what is abnormal, in words
     component: str = ''  # that is to blame; empty: none
+    kind: str = ''  # what is wrong with it
+    alarm: int = 0  # id of the alarm or suspicion
     events: int = 0  # in the window
 
     @property
     def words(self) -> str:
         """What is said, without the file."""
         return self.message.split(_RECORDED)[0]
+
+
+class Incident(NamedTuple):
+    """What one cause has done: ids of its first and last alarm, and its times [s since 1970]."""
+
+    id: int
+    last: int
+    opened: float
+    ended: float
 
 
 @dataclass(frozen=True)
@@ -86,10 +97,18 @@ class Row:
     latency_s: Optional[float] = None
     blamed_s: Optional[float] = None  # from the onset to the first ERROR that blames the node
     first: Optional[bool] = None  # whether the node is the first suspect of the first ERROR
+    # What was said when the fault was undone.
+    end_level: Optional[int] = None
+    end_kind: Optional[str] = None
+    end_component: Optional[str] = None
     recovered_s: Optional[float] = None  # from the onset to when the node was as before
     # From then to the end of the alarm; 0: there was none then; inf: it stood to the end of the
     # wait.
     cleared_s: Optional[float] = None
+    # From the onset to when the alarm's incident was opened, and to its last alarm so far;
+    # negative: it is one with an earlier fault.
+    incident_began_s: Optional[float] = None
+    incident_ended_s: Optional[float] = None
     # From blamed_s to when a new process of the node was heard, by the recovery.
     back_s: Optional[float] = None
     events: Optional[int] = None  # that the monitor judged
@@ -115,13 +134,14 @@ class Row:
         return self.onset + (self.lasted_s if self.recovered_s is None else self.recovered_s)
 
 
-def measure(row: Row, statuses: Sequence[Status]) -> Row:
+def measure(row: Row, statuses: Sequence[Status], incidents: Sequence[Incident] = ()) -> Row:
     """Measure what the monitor said of a stretch of time.
 
     Args:
         row: what is known without it: of normal operation, with 0 alarms; of a fault, with
             recovered_s, if the statuses go on after that. Its onset and lasted_s are the stretch.
         statuses: of the whole session, in their order.
+        incidents: so far, in their order.
     """
     before = [status for status in statuses if status.stamp <= row.onset][-1:]
     inside = [status for status in statuses
@@ -139,10 +159,10 @@ def measure(row: Row, statuses: Sequence[Status]) -> Row:
     row = replace(row, void=row.void or _void(before, inside))
     if row.recovered_s is not None:
         row = replace(row, cleared_s=_cleared(row.end, statuses))
-    return row if row.void else _of_fault(row, inside)
+    return row if row.void else _of_fault(row, inside, incidents)
 
 
-def _of_fault(row: Row, inside: Sequence[Status]) -> Row:
+def _of_fault(row: Row, inside: Sequence[Status], incidents: Sequence[Incident]) -> Row:
     guilty = {f'/{name}' for name in row.node.split()}
     alarms = [status for status in inside if status.level >= ERROR]
 
@@ -150,13 +170,20 @@ def _of_fault(row: Row, inside: Sequence[Status]) -> Row:
         return found[0].stamp - row.onset if found else None
 
     row = replace(
-        row, latency_s=first_s(alarms),
+        row, end_level=inside[-1].level, end_kind=inside[-1].kind,
+        end_component=inside[-1].component, latency_s=first_s(alarms),
         suspicion_s=first_s([status for status in inside if status.level >= WARN]),
         blamed_s=first_s([status for status in alarms if status.component in guilty]))
     if not alarms:
         return row
-    return replace(row, said=alarms[0].words,
-                   first=bool(set(alarms[0].suspects[:1]) & guilty) if guilty else None)
+    alarm = alarms[0]
+    row = replace(row, said=alarm.words,
+                  first=bool(set(alarm.suspects[:1]) & guilty) if guilty else None)
+    for each in reversed(incidents):
+        if each.id <= alarm.alarm <= each.last:
+            return replace(row, incident_began_s=each.opened - row.onset,
+                           incident_ended_s=each.ended - row.onset)
+    return row
 
 
 def _void(before: Sequence[Status], inside: Sequence[Status]) -> str:

@@ -65,6 +65,8 @@ def test_what_drivers_replay_is_made(tmp_path: Path) -> None:
 class Monitor:
     """Has said every 10 ms what was wrong, and is reset."""
 
+    incidents = ()
+
     def __init__(self) -> None:
         self.resets = 0
         self.wrong_from = self.wrong_to = float('inf')
@@ -125,7 +127,7 @@ def test_a_fault_is_watched_until_its_alarm_is_over(monitor: Monitor) -> None:
     assert row.latency_s == pytest.approx(0.105, abs=0.006) and row.lasted_s >= 0.3
     assert row.back_s == pytest.approx(row.lasted_s - 0.105, abs=0.1)
     assert row.recovered_s is not None and row.recovered_s >= row.lasted_s
-    assert (row.cleared_s, row.memory_mb) == (0.0, 20.0)
+    assert (row.cleared_s, row.end_component, row.memory_mb) == (0.0, '/a', 20.0)
     over = row.onset + row.recovered_s
     row = steps.take(Step('normal', 0.2, is_normal=True))
     assert row.onset == pytest.approx(over + 0.2), 'an alarm after the aftermath is a false one'
