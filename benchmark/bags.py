@@ -16,7 +16,7 @@ import random
 import statistics
 import sys
 import tempfile
-from typing import Any, Dict, Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, NamedTuple, Sequence, Tuple
 
 import genpy
 import rosbag
@@ -48,13 +48,6 @@ _NAMES = {'view': '`rosbag::View`, C++', 'read_messages': '`read_messages(raw=Tr
           'read_events': '`read_events`', 'train': '`train`'}
 
 
-class Program(NamedTuple):
-    """A program that reads a bag, and the same program without work."""
-
-    work: List[str]
-    start: List[str]
-
-
 def warm(path: str) -> None:
     """Bring a file into the page cache."""
     with open(path, 'rb') as file:
@@ -62,34 +55,29 @@ def warm(path: str) -> None:
             pass
 
 
-def programs(bag: str, model: str) -> Dict[str, Program]:
-    """Return the programs to measure, by name; the others are compared with 'view'.
+def programs(bag: str, model: str) -> Dict[str, Tuple[List[str], List[str]]]:
+    """Return the programs to measure, by name, each with work and without; the others are compared
+    with 'view'.
 
     Raises:
         FileNotFoundError: a program is not built.
     """
-    view = built('bags_view_iteration')
-    train = built('train')
-    return {
-        'view': Program([view, bag], [view]),
-        'read_messages': Program([sys.executable, '-c', _RAW, bag],
-                                 [sys.executable, '-c', 'import rosbag']),
-        'read_events': Program([sys.executable, '-c', _EVENTS, bag],
-                               [sys.executable, '-c', 'import self_awareness']),
-        'train': Program([train, bag, '-o', model], [train, '--help']),
-    }
+    view, train, python = built('bags_view_iteration'), built('train'), [sys.executable, '-c']
+    return {'view': ([view, bag], [view]),
+            'read_messages': ([*python, _RAW, bag], [*python, 'import rosbag']),
+            'read_events': ([*python, _EVENTS, bag], [*python, 'import self_awareness']),
+            'train': ([train, bag, '-o', model], [train, '--help'])}
 
 
 def measure(bag: str, model: str, rounds: int) -> Dict[str, Any]:
     """Return the medians of every program, and how much it reads."""
     chosen = programs(bag, model)
-    work: Dict[str, List[Usage]] = {name: [] for name in chosen}
-    start: Dict[str, List[Usage]] = {name: [] for name in chosen}
+    work, start = ({name: [] for name in chosen} for _ in range(2))
     warm(bag)
     for _ in range(rounds):
-        for name, program in chosen.items():
-            start[name].append(run_program(program.start))
-            work[name].append(run_program(program.work))
+        for name, (with_work, without) in chosen.items():
+            start[name].append(run_program(without))
+            work[name].append(run_program(with_work))
     return {name: {
         'wall_s': _median(work[name], 'wall_s'), 'start_wall_s': _median(start[name], 'wall_s'),
         'read_bytes': _median(work[name], 'read_bytes') - _median(start[name], 'read_bytes')}
@@ -131,15 +119,14 @@ def markdown(result: Dict[str, Any]) -> str:
     """Return the section of docs/performance.md, with a line on --jobs if it was measured."""
     programs = result['programs']
     size = result['bag_bytes']
-    lines = [
+    return '\n'.join([
         f'{size / 1e9:.2f} GB with images, {result["messages"]:,} messages, in the page cache; in '
         'brackets, times `rosbag::View`.', '',
-        '| | whole process | without start | read |', '|---|--:|--:|--:|']
-    for name, program in programs.items():
-        lines.append(f'| {_NAMES[name]} | {_time(programs, name, False)} '
-                     f'| {_time(programs, name, True)} '
-                     f'| {100 * program["read_bytes"] / size:.1f} % |')
-    return '\n'.join(lines) + (f'\n\n{_jobs(result["jobs"])}' if 'jobs' in result else '')
+        '| | whole process | without start | read |', '|---|--:|--:|--:|', *(
+            f'| {_NAMES[name]} | {_time(programs, name, False)} | {_time(programs, name, True)} '
+            f'| {100 * program["read_bytes"] / size:.1f} % |'
+            for name, program in programs.items()),
+        *(['', _jobs(result['jobs'])] if 'jobs' in result else [])])
 
 
 def _jobs(result: Dict[str, Any]) -> str:
@@ -157,17 +144,16 @@ def _time(programs: Dict[str, Any], name: str, alone: bool) -> str:
     return f'{seconds:.2f} s ({seconds / of(programs["view"]):.2f})'
 
 
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the benchmark; return the exit code."""
+def main() -> None:
+    """Run the benchmark."""
     parser = page.parser('bags', __doc__.split('\n', 1)[0])
     parser.add_argument('--rounds', type=int, default=11, metavar='N',
                         help='runs of every program, in turn (default: 11)')
     parser.add_argument('--only', choices=('images', 'jobs'),
                         help='measure one part again; the other one stays as bags.json has it')
-    arguments = parser.parse_args(argv)
-    result: Dict[str, Any] = {}
-    if arguments.only is not None:
-        result = json.loads((arguments.output / 'performance' / 'bags.json').read_text())
+    arguments = parser.parse_args()
+    before = arguments.output / 'performance' / 'bags.json'
+    result: Dict[str, Any] = json.loads(before.read_text()) if arguments.only else {}
     with tempfile.TemporaryDirectory() as folder:
         if arguments.only != 'jobs':
             result.update(measure_images(folder, arguments.rounds))
@@ -175,7 +161,6 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
             result['jobs'] = measure_jobs(folder, arguments.rounds)
     page.publish('bags', result, markdown(result), arguments.output)
     print(markdown(result))
-    return 0
 
 
 class _Topic(NamedTuple):
@@ -214,11 +199,8 @@ _NODES: Dict[str, Tuple[float, List[_Topic]]] = {
 
 
 def _write(path: str, seconds: float, seed: int) -> int:
-    """Write the bag with images, uncompressed, with rosbag's default size of chunks.
-
-    Returns:
-        the number of messages.
-    """
+    """Write the bag with images, uncompressed, with rosbag's default size of chunks; return the
+    number of messages."""
     rng = random.Random(seed)
     pixels = rng.getrandbits(8 * _IMAGE_BYTES).to_bytes(_IMAGE_BYTES, 'little')
     messages = sorted(_messages(seconds, rng), key=lambda message: message[0])
@@ -256,4 +238,4 @@ def _median(usages: Sequence[Usage], field: str) -> float:
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    main()

@@ -1,12 +1,11 @@
 """Writes docs/performance/core.json from the output of the core's benchmarks, and from that the
-section `core` of docs/performance.md.
-"""
+section `core` of docs/performance.md."""
 from __future__ import annotations
 
 import json
 import statistics
 from pathlib import Path
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Optional
 
 import page
 
@@ -37,23 +36,21 @@ def summary(raw: Measured) -> Measured:
     medians = _medians(raw['benchmarks'])
     result: Measured = {'date': raw['context']['date'][:10]}
     for detector in DETECTORS:
-        rows = {}
-        for name, score in medians.items():
-            kind, size = name.split('/')
-            if kind != f'score{detector.capitalize()}':
-                continue
-            of = {step: medians.get(f'{step}{detector.capitalize()}/{size}')
-                  for step in ('lookUp', 'train', 'closeWindow')}
-            rows[size] = {
-                'event_ns': score['time'] * 1e6,
-                'terms': score.get('terms'),
-                'lookup_ns': of['lookUp']['time'] * 1e6 if of['lookUp'] else None,
-                'window_ns': of['closeWindow']['time'] * 1e6 if of['closeWindow'] else None,
-                'train_events_per_s': of['train']['events'] / of['train']['time'] * 1e3,
-                'model_bytes': score['bytes'],
-            }
-        result[detector] = dict(sorted(rows.items(), key=lambda row: int(row[0])))
+        of = detector.capitalize()
+        sizes = [name.split('/')[1] for name in medians if name.startswith(f'score{of}/')]
+        result[detector] = {
+            size: {'event_ns': score['time'] * 1e6, 'terms': score.get('terms'),
+                   'lookup_ns': _nanoseconds(medians.get(f'lookUp{of}/{size}')),
+                   'window_ns': _nanoseconds(medians.get(f'closeWindow{of}/{size}')),
+                   'train_events_per_s': train['events'] / train['time'] * 1e3,
+                   'model_bytes': score['bytes']}
+            for size in sorted(sizes, key=int)
+            for score, train in [(medians[f'score{of}/{size}'], medians[f'train{of}/{size}'])]}
     return result
+
+
+def _nanoseconds(step: Optional[Measured]) -> Optional[float]:
+    return None if step is None else step['time'] * 1e6
 
 
 def markdown(measured: Measured) -> str:

@@ -12,11 +12,11 @@ import contextlib
 import json
 import re
 import statistics
-import sys
 import tempfile
 import time
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Tuple
 
 import rospy
 from sensor_msgs.msg import Imu
@@ -44,12 +44,12 @@ _LOADED = re.compile(r'\[([0-9.]+)\]: model .* event types')
 _LEVEL_ERROR = 2
 
 
+@dataclass(frozen=True)
 class _Benchmark:
-    def __init__(self, folder: Path, processes: Processes, seconds: float, rounds: int) -> None:
-        self._folder = folder
-        self._processes = processes
-        self._seconds = seconds
-        self._rounds = rounds
+    _folder: Path
+    _processes: Processes
+    _seconds: float
+    _rounds: int
 
     def run(self) -> Dict[str, Any]:
         costs: List[Dict[str, Any]] = []
@@ -88,13 +88,13 @@ class _Benchmark:
                     samples.setdefault(name, []).append(self._sample(robot, subject))
         rows = []
         for name, of_subject in samples.items():
-            row: Dict[str, Any] = dict(robot.configuration._asdict(), subject=name)
-            for key in of_subject[0]:
-                row[key] = statistics.median(sample[key] for sample in of_subject)
-            row['dropped'] = sum(sample['dropped'] for sample in of_subject)
-            row['samples'] = [sample['cpu_share'] for sample in of_subject]
-            rows.append(row)
-            print(json.dumps(row), flush=True)
+            rows.append({
+                **robot.configuration._asdict(), 'subject': name,
+                **{key: statistics.median(sample[key] for sample in of_subject)
+                   for key in of_subject[0]},
+                'dropped': sum(sample['dropped'] for sample in of_subject),
+                'samples': [sample['cpu_share'] for sample in of_subject]})
+            print(json.dumps(rows[-1]), flush=True)
         return rows
 
     def _sample(self, robot: Robot, subject: Subject) -> Dict[str, float]:
@@ -151,7 +151,6 @@ class _Benchmark:
                 robot.await_subscribers(1)
                 times.append(time.time() - begin)
                 monitor.stop()
-        print(json.dumps(times), flush=True)
         return times
 
     def _loads(self, model: Path) -> List[float]:
@@ -165,7 +164,6 @@ class _Benchmark:
                 monitor.stop()  # writes the log
                 log = (self._folder / 'monitor.log').read_text()
                 times.append(float(_LOADED.findall(log)[-1]) - begin)
-        print(json.dumps(times), flush=True)
         return times
 
 
@@ -236,20 +234,18 @@ def _ms(seconds: float) -> str:
     return f'{1000 * seconds:.3g} ms' if seconds < 1 else f'{seconds:.2f} s'
 
 
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the benchmark; return the exit code."""
+def main() -> None:
+    """Run the benchmark."""
     parser = page.parser('live', __doc__)
     parser.add_argument('--seconds', type=float, default=10.0, help='of each measurement')
     parser.add_argument('--rounds', type=int, default=3, help='of all subjects, in turn')
-    arguments = parser.parse_args(argv)
+    arguments = parser.parse_args()
     with tempfile.TemporaryDirectory(dir='/dev/shm') as name:
         folder = Path(name)
         with own_master(folder, 'benchmark', pin(LOAD_CORE)) as processes:
-            benchmark = _Benchmark(folder, processes, arguments.seconds, arguments.rounds)
-            result = benchmark.run()
+            result = _Benchmark(folder, processes, arguments.seconds, arguments.rounds).run()
     page.publish('live', result, markdown(result), arguments.output)
-    return 0
 
 
 if __name__ == '__main__':
-    sys.exit(main())
+    main()

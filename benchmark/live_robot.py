@@ -211,23 +211,15 @@ def usage(pid: int) -> Usage:
 
 
 class Subject(abc.ABC):
-    """A program that listens.
-
-    Args:
-        processes: to start it among.
-        log: name of its log.
-        command: that starts it.
-    """
+    """A program that listens; its log has a name of its own."""
 
     def __init__(self, processes: Processes, log: str, *command: str) -> None:
         self._processes = processes
-        self._log = log
-        self._command = command
+        self._started_by = log, *pin(SUBJECT_CORE, *command)
 
     def start(self, *more: str) -> subprocess.Popen:
         """Start the program with further arguments."""
-        self._process = self._processes.start(self._log,
-                                              *pin(SUBJECT_CORE, *self._command, *more))
+        self._process = self._processes.start(*self._started_by, *more)
         return self._process
 
     def stop(self) -> int:
@@ -276,9 +268,8 @@ class Monitor(Subject):
         self._folder = model.parent
         self._lock = threading.Lock()
         self._events = 0
+        # End of every window since it had settled, and when its verdict was heard [s since 1970].
         self.verdicts: List[Tuple[float, float]] = []
-        """End of every window since it had settled, and when its verdict was heard [s since
-        1970]."""
         self.level = -1  # of communication on /diagnostics; -1 before the first
         self._changed_at = 0.0
         self._subscribers = [

@@ -42,9 +42,9 @@ def _write(path: str) -> int:
 
 
 def _run(program: str, *arguments: str) -> Dict[str, float]:
-    """Run a program; return its time and the most memory that it had."""
-    used = page.run_program((sys.executable, '-B', '-c', _PROGRAM.format(program), *arguments))
-    return {'wall_s': used.wall_s, 'peak_bytes': used.peak_bytes}
+    """Run a program; return what it used."""
+    return page.run_program((sys.executable, '-B', '-c', _PROGRAM.format(program), *arguments)
+                            )._asdict()
 
 
 def _loaded_s(path: str) -> float:

@@ -32,11 +32,7 @@ def events_of(types: int, duration: float) -> Tuple[np.ndarray, np.ndarray]:
 
 
 def write(folder: str, number: int, types: int, seconds: float) -> Tuple[List[str], int]:
-    """Write the bags, of so many seconds each.
-
-    Returns:
-        their paths, and the number of messages in all of them.
-    """
+    """Write bags of so many seconds each; return their paths, and the number of all messages."""
     stamps, ids = events_of(types, number * seconds)
     cuts = np.searchsorted(stamps, [int(1e9 * seconds * part) for part in range(1, number)])
     paths = []

@@ -9,15 +9,10 @@
 #include <iostream>
 #include <vector>
 
-namespace {
-
-constexpr std::uint32_t kQueueSize = 1000;  // the monitor's default
-
-}  // namespace
-
 int main(int argc, char** argv) {
   ros::init(argc, argv, "bare_subscriber");
   ros::NodeHandle node_handle;
+  constexpr std::uint32_t kQueueSize = 1000;  // the monitor's default
   std::uint64_t counted = 0;
   std::vector<ros::Subscriber> subscribers;
   for (int i = 1; i < argc; ++i) {

@@ -23,7 +23,7 @@ Acceptance acceptanceOf(std::string component, std::string topic, const std::str
   Acceptance acceptance;
   acceptance.component = std::move(component);
   acceptance.topic = std::move(topic);
-  acceptance.kind = core::kindOf(kind);
+  acceptance.kind = kind.empty() ? std::nullopt : std::optional(kindNamed(kind));
   acceptance.at = at;
   acceptance.by = std::move(by);
   acceptance.together = std::move(together);
@@ -32,9 +32,6 @@ Acceptance acceptanceOf(std::string component, std::string topic, const std::str
     throw std::invalid_argument(
         "those who are off together are of the kind new mode, and of no "
         "other");
-  }
-  if (!kind.empty() && !acceptance.kind) {
-    throw std::invalid_argument(kind + " is no kind of an alarm");
   }
   return acceptance;
 }

@@ -13,10 +13,10 @@ namespace self_awareness::python {
 namespace {
 
 std::string sentenceOf(const std::string& kind, std::vector<std::string> components,
-                       std::string topic, std::string wrong, std::string reason, bool is_silence,
-                       std::string begin, std::string end, std::string goes_on, std::string back,
+                       std::string topic, std::string wrong, bool is_silence, std::string begin,
+                       std::string back, std::string reason, std::string end, std::string goes_on,
                        std::size_t times, std::vector<std::string> hosts, std::size_t silent) {
-  return core::sentence({core::kindOf(kind).value(), std::move(components), std::move(topic),
+  return core::sentence({kindNamed(kind), std::move(components), std::move(topic),
                          std::move(wrong), std::move(reason), is_silence, std::move(begin),
                          std::move(end), std::move(goes_on), std::move(back), times,
                          std::move(hosts), silent});
@@ -44,8 +44,6 @@ void bindAlarms(py::module& m) {
       .def_readonly("usual_longest", &Reason::usual_longest, "its upper end; NaN: not known")
       .def_readonly("lasted", &Reason::lasted,
                     "the value is of the last so many seconds; NaN: of one moment")
-      .def_readonly("of", &Reason::of, "delays that the value is of; 0: it is not of delays")
-      .def_readonly("times", &Reason::times, "of them, unusual")
       .def_readonly("topics", &Reason::topics,
                     "that it does not subscribe to; of a stranger, what it has from others, or "
                     "plays on")
@@ -53,28 +51,28 @@ void bindAlarms(py::module& m) {
       .def("shortly", &core::shortly, py::arg("is_silence"), py::arg("is_back"),
            "What somebody does wrong, in a few words.");
 
-  py::class_<core::Suspect>(m, "Suspect", "An event type that may have made a window abnormal.")
-      .def_readonly("id", &core::Suspect::id, "of the event type")
-      .def_readonly("component", &core::Suspect::component,
-                    "whose event type it is; empty: not known")
-      .def_readonly("abnormal", &core::Suspect::abnormal, "it alone would be abnormal")
-      .def_readonly("topic", &core::Suspect::topic, "of its event type")
-      .def_readonly("value", &core::Suspect::value,
+  using core::Suspect;
+  py::class_<Suspect>(m, "Suspect", "An event type that may have made a window abnormal.")
+      .def_readonly("id", &Suspect::id, "of the event type")
+      .def_readonly("component", &Suspect::component, "whose event type it is; empty: not known")
+      .def_readonly("abnormal", &Suspect::abnormal, "it alone would be abnormal")
+      .def_readonly("topic", &Suspect::topic, "of its event type")
+      .def_readonly("value", &Suspect::value,
                     "that its messages have: status.status=4; empty: none")
-      .def_readonly("onset", &core::Suspect::onset,
+      .def_readonly("onset", &Suspect::onset,
                     "since when what is wrong with it has been so [ns]; 0: not known")
-      .def_readonly("since", &core::Suspect::since,
+      .def_readonly("since", &Suspect::since,
                     "when the alarm or the suspicion first named its component [ns]")
-      .def_readonly("reason", &core::Suspect::reason);
+      .def_readonly("reason", &Suspect::reason);
 
-  py::class_<core::Silent>(m, "Silent", "Components that fell silent together.")
-      .def_readonly("hosts", &core::Silent::hosts,
-                    "their computers; empty: nobody was heard any more")
-      .def_readonly("components", &core::Silent::components)
-      .def_readonly("others_go_on", &core::Silent::others_go_on,
+  using core::Silent;
+  py::class_<Silent>(m, "Silent", "Components that fell silent together.")
+      .def_readonly("hosts", &Silent::hosts, "their computers; empty: nobody was heard any more")
+      .def_readonly("components", &Silent::components)
+      .def_readonly("others_go_on", &Silent::others_go_on,
                     "others are heard: they stopped for another reason than a computer")
-      .def_readonly("since", &core::Silent::since, "stamp of the last event of them [ns]")
-      .def("__str__", [](const core::Silent& self) { return core::describe(self); });
+      .def_readonly("since", &Silent::since, "stamp of the last event of them [ns]")
+      .def("__str__", [](const Silent& self) { return core::describe(self); });
 
   using core::Alarm;
   py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood, or a suspicion.")
@@ -115,9 +113,9 @@ void bindAlarms(py::module& m) {
                     "of components that it named later, each with its time (since)")
       .def("__str__", [](const Alarm& self) { return core::sentence(self); });
   m.def("sentence", &sentenceOf, py::arg("kind"), py::arg("components"), py::arg("topic"),
-        py::arg("wrong"), py::arg("reason"), py::arg("is_silence"), py::arg("begin"),
-        py::arg("end"), py::arg("goes_on"), py::arg("back"), py::arg("times"), py::arg("hosts"),
-        py::arg("silent"),
+        py::arg("wrong"), py::arg("is_silence"), py::arg("begin"), py::arg("back"),
+        py::arg("reason") = "", py::arg("end") = "", py::arg("goes_on") = "", py::arg("times") = 1,
+        py::arg("hosts") = std::vector<std::string>(), py::arg("silent") = 0,
         "Return what happened in a sentence without its full stop; times are in words.\n\n"
         "Args:\n"
         "    kind: what is wrong, as Alarm.kind.\n"

@@ -80,6 +80,15 @@ inline core::SourceGraph graphOf(const std::set<EdgeState>& edges) {
   return graph;
 }
 
+/// @throw std::invalid_argument if no alarm is of this kind
+inline core::Kind kindNamed(const std::string& name) {
+  const std::optional<core::Kind> kind = core::kindOf(name);
+  if (!kind) {
+    throw std::invalid_argument(name + " is no kind of an alarm");
+  }
+  return *kind;
+}
+
 /// Computers by node, or by source.
 using HostsState = std::map<std::string, std::string>;
 
@@ -201,12 +210,11 @@ void bindDrift(py::module& module);
 void bindEncoding(py::module& module);
 void bindEventLogs(py::module& module);
 void bindEvidence(py::module& module);
-void bindFileVersions(py::module& module);
+void bindFiles(py::module& module);
 void bindIncidents(py::module& module);
 void bindLanes(py::module& module);
 void bindLearning(py::module& module);
 void bindModel(py::module& module);
-void bindOutputFiles(py::module& module);
 void bindRecordings(py::module& module);
 void bindResults(py::module& module);
 void bindTuning(py::module& module);

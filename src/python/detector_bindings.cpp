@@ -36,6 +36,12 @@ struct Verdicts {
   std::vector<core::Alarm> suspicions;
 };
 
+/// The getter of a member, as an array.
+template <typename T>
+auto arrayOf(std::vector<T> Verdicts::*member) {
+  return [member](const Verdicts& self) { return toArray(self.*member); };
+}
+
 void record(const core::Alarm& alarm, Verdicts& verdicts) {
   (alarm.level == core::Alarm::Level::kAlarm ? verdicts.alarms : verdicts.suspicions)
       .push_back(alarm);
@@ -117,15 +123,15 @@ void bindVerdicts(py::module& m) {
       .value("WARN", core::UnknownEvents::kWarn)
       .value("ERROR", core::UnknownEvents::kError);
 
-  using core::Detector;
-  py::class_<Detector::Parameters>(m, "DetectorParameters")
+  using Parameters = core::Detector::Parameters;
+  py::class_<Parameters>(m, "DetectorParameters")
       .def(py::init<>())
-      .def_readwrite("settle_time", &Detector::Parameters::settle_time, "[ns]")
-      .def_readwrite("unknown", &Detector::Parameters::unknown);
+      .def_readwrite("settle_time", &Parameters::settle_time, "[ns]")
+      .def_readwrite("unknown", &Parameters::unknown);
 
   py::class_<core::Persistence>(
       m, "Persistence", "Decides when abnormal windows are an alarm, as the detector does.")
-      .def(py::init([](const Detector::Parameters& parameters) {
+      .def(py::init([](const Parameters& parameters) {
              return core::Persistence(parameters.persistence);
            }),
            py::arg("parameters"))
@@ -135,22 +141,15 @@ void bindVerdicts(py::module& m) {
       .def("clear", &core::Persistence::clear, "Forgets all windows and the alarm.");
 
   py::class_<Verdicts>(m, "Verdicts", "One entry a window of a recording, and the alarms.")
-      .def_property_readonly(
-          "start", [](const Verdicts& self) { return toArray(self.start); },
-          "start of the window, int64 [ns]")
-      .def_property_readonly("events", [](const Verdicts& self) { return toArray(self.events); })
-      .def_property_readonly("unknown", [](const Verdicts& self) { return toArray(self.unknown); })
-      .def_property_readonly(
-          "score", [](const Verdicts& self) { return toArray(self.score); },
-          "NaN for a window without events")
-      .def_property_readonly(
-          "abnormal", [](const Verdicts& self) { return toArray(self.abnormal); },
-          "eq. 5, or silence; also while settling")
-      .def_property_readonly("settling",
-                             [](const Verdicts& self) { return toArray(self.settling); })
-      .def_property_readonly(
-          "suspicion", [](const Verdicts& self) { return toArray(self.suspicion); },
-          "WARN: no alarm, but something was abnormal recently")
+      .def_property_readonly("start", arrayOf(&Verdicts::start), "of the window, int64 [ns]")
+      .def_property_readonly("events", arrayOf(&Verdicts::events))
+      .def_property_readonly("unknown", arrayOf(&Verdicts::unknown))
+      .def_property_readonly("score", arrayOf(&Verdicts::score), "NaN for a window without events")
+      .def_property_readonly("abnormal", arrayOf(&Verdicts::abnormal),
+                             "eq. 5, or silence; also while settling")
+      .def_property_readonly("settling", arrayOf(&Verdicts::settling))
+      .def_property_readonly("suspicion", arrayOf(&Verdicts::suspicion),
+                             "WARN: no alarm, but something was abnormal recently")
       .def_readonly("alarms", &Verdicts::alarms)
       .def_readonly("suspicions", &Verdicts::suspicions, "level WARN, each an Alarm");
 

@@ -23,14 +23,6 @@ namespace {
 using NamedState =
     std::tuple<std::string, bool, std::optional<std::int64_t>, std::string, std::int64_t>;
 
-core::Kind kindNamed(const std::string& name) {
-  const std::optional<core::Kind> kind = core::kindOf(name);
-  if (!kind) {
-    throw std::invalid_argument(name + " is no kind of an alarm");
-  }
-  return *kind;
-}
-
 core::Occurrence occurrenceOf(std::uint64_t id, bool is_alarm, std::int64_t begin,
                               std::int64_t end, const std::string& kind, std::string culprit,
                               std::vector<NamedState> named, std::vector<std::string> hosts) {

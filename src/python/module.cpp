@@ -7,9 +7,8 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "C++ core of self_awareness: the one implementation of the method.";
   self_awareness::python::bindEncoding(m);
   self_awareness::python::bindRecordings(m);
-  self_awareness::python::bindOutputFiles(m);
+  self_awareness::python::bindFiles(m);
   self_awareness::python::bindEventLogs(m);
-  self_awareness::python::bindFileVersions(m);
   self_awareness::python::bindModel(m);
   self_awareness::python::bindTuning(m);
   self_awareness::python::bindEvidence(m);

@@ -7,10 +7,7 @@ from typing import Callable, Optional, Sequence
 from self_awareness import (Acceptance, DetectorParameters, EvidenceModel, PaperModel,
                             TrainedModel, Verdicts, judge_by_evidence)
 
-EVIDENCE = 'evidence'
-PAPER = 'paper'
-BOTH = 'both'
-"""The detectors that a model may be trained for."""
+EVIDENCE, PAPER, BOTH = 'evidence', 'paper', 'both'  # detectors that a model is trained for
 
 Judge = Callable[..., Verdicts]
 """Takes a RecordingEvents, and a ReplayedMonitor if one is to be told of each window."""

@@ -19,15 +19,10 @@ _PICTURES = (rb'\x89PNG\r\n\x1a\n', rb'%PDF-', rb'<\?xml[^>]*>\s*<!DOCTYPE svg')
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of file: a program replaces files of this kind, and no others.
+    """A kind of file: a program replaces files of this kind, and no others."""
 
-    Args:
-        name: in words.
-        is_one: says whether a file is of this kind.
-    """
-
-    name: str
-    is_one: Callable[[str], bool]
+    name: str  # in words
+    is_one: Callable[[str], bool]  # says whether a file is of this kind
 
 
 def _is_model(path: str) -> bool:

@@ -25,26 +25,20 @@ _FOREIGN = ('.mcap', '.db3', *(f'{_BAG}.{packed}' for packed in
 
 @dataclass(frozen=True)
 class BagPart:
-    """A recording, or a part of it in seconds from its first message.
+    """A recording, or a part of it in seconds from its first message."""
 
-    Args:
-        path: of a bag, or of an event log.
-        start, end: of the part [s]; None: of the recording.
-        recording: its number in an event log, from 0; None: the file is a bag, or look() has not
-            looked at it yet.
-        alone: it is the only recording of its file.
-        robot: of which it is a recording, where the file does not say it; empty: not known.
-        more: the files after the first one, of a recording in several bags (split_bags).
-        last: number of the last of them; None: there is none, or look() has found them.
-    """
-
-    path: str
+    path: str  # of a bag, or of an event log
+    # Of the part [s]; None: of the recording.
     start: Optional[float] = None
     end: Optional[float] = None
+    # Its number in an event log, from 0; None: the file is a bag, or look() has not looked at it
+    # yet.
     recording: Optional[int] = None
-    alone: bool = True
-    robot: str = ''
+    alone: bool = True  # it is the only recording of its file
+    robot: str = ''  # of which it is a recording, where the file does not say it; empty: not known
+    # The files after the first one, of a recording in several bags (split_bags).
     more: Tuple[str, ...] = ()
+    # Number of the last of them; None: there is none, or look() has found them.
     last: Optional[int] = None
 
     @classmethod
@@ -113,17 +107,13 @@ class BadRecordingsError(BagError):
 
 @dataclass
 class Named:
-    """The recordings that were named.
+    """The recordings that were named."""
 
-    Args:
-        parts: those that can be used, as far as the ends of the files show it.
-        bad: a line for each that cannot: the file, what it is, and what mends it.
-        told: lines about bags that are one recording.
-    """
-
+    # Those that can be used, as far as the ends of the files show it.
     parts: List[BagPart] = field(default_factory=list)
+    # A line for each that cannot: the file, what it is, and what mends it.
     bad: List[str] = field(default_factory=list)
-    told: List[str] = field(default_factory=list)
+    told: List[str] = field(default_factory=list)  # lines about bags that are one recording
 
     def check(self, skip_bad: bool = False) -> None:
         """Check that none is bad; or, if these are left out, that there is another one.

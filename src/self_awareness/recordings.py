@@ -4,8 +4,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import (Dict, Iterable, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Set,
-                    Tuple)
+from typing import Dict, Iterable, List, Mapping, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -24,26 +23,12 @@ MOST_WINDOWS = 10_000_000
 _MOST_STEPS = 3  # that are told
 
 
-def _first_after(stamps: np.ndarray,
-                 set_back: Iterable[Tuple[int, int]]) -> Iterator[Tuple[int, int]]:
-    """Return the steps of a bag's clock by the events that come next, if there are some."""
-    for stamp, by in set_back:
-        after = int(np.searchsorted(stamps, stamp))
-        if 0 < after < len(stamps):
-            yield int(stamps[after]), by
-
-
 @dataclass(frozen=True)
 class ClockStep:
-    """The clock was set.
+    """The clock was set."""
 
-    Args:
-        at_s: when the next event came, from the recording's first message [s].
-        by_s: by how much, and the usual delay [s]; negative: back.
-    """
-
-    at_s: float
-    by_s: float
+    at_s: float  # when the next event came, from the recording's first message [s]
+    by_s: float  # by how much, and the usual delay [s]; negative: back
 
     def __str__(self) -> str:
         way = 'forward' if self.by_s > 0 else 'back'
@@ -111,12 +96,14 @@ class RecordingEvents:
     def of(cls, part: BagPart, events: RecordedEvents,
            encoding: EncodingRules) -> RecordingEvents:
         """Return the events that were read for a part, by an encoding."""
-        summary = events.summary
-        set_back = dict(_first_after(events.stamps, summary.set_back))
-        steps = [] if summary.clock_watched else find_clock_steps(events.stamps, events.ids)
+        summary, stamps = events.summary, events.stamps
+        # By the events that come next, if there are some.
+        set_back = {int(stamps[after]): by for stamp, by in summary.set_back
+                    for after in [np.searchsorted(stamps, stamp)] if 0 < after < len(stamps)}
+        steps = [] if summary.clock_watched else find_clock_steps(stamps, events.ids)
         _, end = part.span(summary.start, summary.end)
         return cls(
-            events.event_types, events.stamps, events.ids, end, summary.fingerprint, summary.bag,
+            events.event_types, stamps, events.ids, end, summary.fingerprint, summary.bag,
             summary.robot or part.robot, summary.robot_start, sorted({*steps, *set_back}),
             events.attributes, events.waiting, events.senders,
             hosts=RobotGraph(*summary.graph).hosts_of_sources(encoding), part=part,
@@ -143,13 +130,9 @@ class RecordingEvents:
         delays = np.diff(self.stamps)
         said = np.flatnonzero((delays < -LATEST_EVENT) | (delays > LONGEST_SILENCE))
         found = [int(np.argmax(self.stamps[1:] == stamp)) for stamp in self.clock_steps]
-        return [ClockStep((int(self.stamps[i + 1]) - self.origin) / SECOND_NS,
-                          self._set_by(i, int(delays[i])) / SECOND_NS)
-                for i in sorted({*said.tolist(), *found})]
-
-    def _set_by(self, index: int, delay: int) -> int:
-        back = self.set_back.get(int(self.stamps[index + 1]))
-        return delay if back is None else -back
+        return [ClockStep((after - self.origin) / SECOND_NS,
+                          -self.set_back.get(after, -int(delays[i])) / SECOND_NS)
+                for i in sorted({*said.tolist(), *found}) for after in [int(self.stamps[i + 1])]]
 
     @cached_property
     def recording(self) -> Recording:
@@ -338,16 +321,11 @@ def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -
 
 
 class Unknown(NamedTuple):
-    """Event types that a model does not know: the number of their events and the name of each.
+    """Event types that a model does not know: the number of their events and the name of each."""
 
-    Args:
-        new: training knows them in no way: nobody published them.
-        modes: of the robot, that training never saw.
-        unheard: they were published in training, and nobody subscribed to them.
-    """
-
-    new: List[Tuple[int, str]]
-    modes: List[Tuple[int, str]]
+    new: List[Tuple[int, str]]  # training knows them in no way: nobody published them
+    modes: List[Tuple[int, str]]  # of the robot, that training never saw
+    # They were published in training, and nobody subscribed to them.
     unheard: List[Tuple[int, str]]
 
 

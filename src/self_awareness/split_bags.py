@@ -27,16 +27,13 @@ _OVERLAP_NS = SECOND_NS
 
 @dataclass(frozen=True)
 class Split:
-    """What became of some bags.
+    """What became of some bags."""
 
-    Args:
-        recordings: the files of each recording, in their order; of most, there is one.
-        empty: files within a recording in which nothing came: the robot was silent.
-        told: lines about what is one recording, and what is none although it looks like one.
-    """
-
+    # The files of each recording, in their order; of most, there is one.
     recordings: List[List[str]] = field(default_factory=list)
+    # Files within a recording in which nothing came: the robot was silent.
     empty: Set[str] = field(default_factory=set)
+    # Lines about what is one recording, and what is none although it looks like one.
     told: List[str] = field(default_factory=list)
 
 

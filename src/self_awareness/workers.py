@@ -25,10 +25,8 @@ _Shared = TypeVar('_Shared')
 _Task = TypeVar('_Task')
 _Result = TypeVar('_Result')
 
-_AHEAD = 2
-"""Tasks for each worker that may be under way, or done and waiting for their turn."""
-_LARGEST_BATCH = 8
-"""The most tasks of a batch, unless there are more workers than this."""
+_AHEAD = 2  # tasks for each worker that may be under way, or done and waiting for their turn
+_LARGEST_BATCH = 8  # the most tasks of a batch, unless there are more workers than this
 _RETRIES = 2
 _ATTEMPTS = 1 + _RETRIES
 _LOOK_AGAIN_S = 0.2
@@ -38,8 +36,7 @@ _CONNECT_S = 10.0
 class Workers(ABC):
     """Applies a function to many tasks. Close it at the end."""
 
-    near = True
-    """Whether arguments and results are handed over at little cost."""
+    near = True  # whether arguments and results are handed over at little cost
 
     @abstractmethod
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,

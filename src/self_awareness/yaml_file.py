@@ -8,8 +8,7 @@ from self_awareness import printable
 
 _LARGEST = 1 << 20
 """Of a file [bytes]: it takes seconds. The graph of a robot of 1000 nodes has half of it."""
-_DEEPEST = 20
-"""Values may lie in each other so often."""
+_DEEPEST = 20  # values may lie in each other so often
 
 
 def load(path: str) -> Any:

@@ -135,15 +135,10 @@ def grouped(rows: Iterable[Row], key: Callable[[Row], _Key]) -> Dict[_Key, List[
 
 
 def of_fault(rows: Iterable[Row], kind: str) -> List[Row]:
-    """Return the rows of a kind of fault; `crash` stands for those of every component, and an
-    empty one for all faults."""
+    """Return the rows of a kind of fault, or of NORMAL; `crash` stands for those of every
+    component, and an empty one for all faults."""
     return [row for row in rows if row.fault == kind or row.fault.startswith(f'{kind}:')
             or not kind and row.fault != NORMAL]
-
-
-def normal(rows: Iterable[Row]) -> List[Row]:
-    """Return the rows without a fault."""
-    return [row for row in rows if row.fault == NORMAL]
 
 
 def median(times_s: Sequence[float]) -> float:
@@ -176,7 +171,7 @@ def rate_interval(robots: Sequence[Tuple[int, float]]) -> Interval:
 
 def columns(rows: Sequence[Row], kinds: Sequence[str]) -> Dict[str, Any]:
     """Return all figures of rows as columns of a CSV file, with those of each kind of fault."""
-    quiet = Quiet.of(normal(rows))
+    quiet = Quiet.of(of_fault(rows, NORMAL))
     found: Dict[str, Any] = {
         'hours': quiet.hours, 'false_alarms': quiet.alarms, 'per_hour': quiet.per_hour,
         'per_hour_low': quiet.interval[0], 'per_hour_high': quiet.interval[1],

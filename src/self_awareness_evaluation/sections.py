@@ -12,8 +12,8 @@ from self_awareness_evaluation.families.protocol import DEATH, KINDS, NEVER, SEL
 from self_awareness_evaluation.families.scene import (CRASH, FLOOD, HALF_RATE, LATE, MISSES, OTHER,
                                                       RESTART, SILENT, STARVED)
 from self_awareness_evaluation.figures import (NONE, WITHIN_S, Cell, Found, Quiet, cells, grouped,
-                                               interval, median, normal, number, of_all, of_fault,
-                                               part, percent, rate, seconds, share, table)
+                                               interval, median, number, of_all, of_fault, part,
+                                               percent, rate, seconds, share, table)
 from self_awareness_evaluation.outages import CASES, END, OUTAGE, Case, Span
 from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
 from self_awareness_evaluation.records import NORMAL
@@ -96,7 +96,7 @@ def _by_fault(by_system: _BySystem) -> List[str]:
              *(number(each.warnings_per_hour) for each in quiet.values())],
             ['components watched', *(
                 f'{each.watched:.3g} of {each.components:.3g}' if each.watched >= 0.0 else NONE
-                for each in (Quiet.of(normal(rows)) for rows in by_system.values()))]]
+                for each in (Quiet.of(of_fault(rows, NORMAL)) for rows in by_system.values()))]]
     return table(['fault', *by_system], [*body, *_rows(by_system, share)])
 
 
@@ -143,7 +143,7 @@ def families(rows: Sequence[Row]) -> Section:
                            == (main.system, main.budget)), lambda row: row.subject.learning)
     names = list(grouped(rows, _FAMILY))
     seeds = grouped(rows, lambda row: row.subject.robot.rpartition(' ')[2])
-    hours = Quiet.of(normal(next(iter(by_learning.values())))).hours
+    hours = Quiet.of(of_fault(next(iter(by_learning.values())), NORMAL)).hours
     told = (f'{len(names)} families, seeds {", ".join(seeds)}, {hours:.3g} h of normal '
             f'operation; learned from {" and from ".join(by_learning)}.')
     return Section('families', FAMILIES_TITLE, {
@@ -161,7 +161,7 @@ def started(learning: str) -> str:
 def _results(by_learning: Dict[str, List[Row]]) -> List[str]:
     """Return the table of all families together, in words; who is named, by the last learning."""
     body = [['false alarms an hour (95 %)',
-             *(rate(Quiet.of(normal(rows))) for rows in by_learning.values()), NONE]]
+             *(rate(Quiet.of(of_fault(rows, NORMAL))) for rows in by_learning.values()), NONE]]
     for kind in KINDS:
         found = [_of_kind(rows, kind) for rows in by_learning.values()]
         if found[0].records:
@@ -186,9 +186,9 @@ def _of_families(families: Sequence[str], by_learning: Dict[str, List[Row]]) -> 
     for family in [*families, ALL]:
         rows = {learning: [row for row in of_learning if family in (ALL, _FAMILY(row))]
                 for learning, of_learning in by_learning.items()}
-        quiet = Quiet.of(normal(rows[first]))
+        quiet = Quiet.of(of_fault(rows[first], NORMAL))
         body.append([
-            family, *(rate(Quiet.of(normal(each))) for each in rows.values()),
+            family, *(rate(Quiet.of(of_fault(each, NORMAL))) for each in rows.values()),
             percent(quiet.standing), number(quiet.warnings_per_hour),
             _crashes(rows[first]), *(_found(rows[last if kind == LATE else first], kind)
                                      for kind in kinds),
@@ -206,7 +206,7 @@ def _pooled(rows: Sequence[Row]) -> List[str]:
     for (learning, system, budget), of_subject in grouped(
             rows, lambda row: (row.subject.learning, row.subject.system, row.subject.budget)
             ).items():
-        quiet = Quiet.of(normal(of_subject))
+        quiet = Quiet.of(of_fault(of_subject, NORMAL))
         body.append([
             system, started(learning), NONE if budget is None else f'{budget:g}', rate(quiet),
             number(quiet.expected), percent(quiet.kept) if quiet.expected >= 0.0 else NONE,

@@ -15,15 +15,15 @@ OUTSIDE, and by more than the one event that may fall to either side of the end 
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import (AbstractSet, Any, Callable, Dict, Hashable, Iterable, List, NamedTuple,
                     Optional, Sequence, Set, Tuple)
 
 import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, Alarm, Coverage, DetectorParameters, EventType,
-                            EvidenceModel, Learner, Occurrence, PaperModel, TrainedModel, Tuning,
-                            Verdicts, fold_incidents, judge_by_evidence)
+                            EvidenceModel, Learner, Occurrence, PaperModel, Tuning, Verdicts,
+                            fold_incidents, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.records import (ALARM, FALSE_POSITIVE_RATE, Judged, SystemAlarm,
@@ -42,23 +42,18 @@ _FEWEST_GAPS = 10
 _NEVER = np.empty(0, dtype=np.int64)
 
 
+@dataclass
 class Paper:
-    """The paper's detector (`detector: paper`); silence scores 0.
+    """The paper's detector (`detector: paper`); silence scores 0."""
 
-    Args:
-        rate: share of the normal windows of the calibration that may score below the threshold.
-        most_silent: the largest share of them that may be silent; where more than `rate` are,
-            twice that share is taken, and so on, and where more than this, no window is abnormal.
-    """
-
+    # Share of the normal windows of the calibration that may score below the threshold, and the
+    # largest share of them that may be silent; where more than `rate` are, twice that share is
+    # taken, and so on, and where more than this, no window is abnormal.
+    rate: float = FALSE_POSITIVE_RATE
+    most_silent: float = 0.0
+    threshold: Optional[float] = field(default=None, init=False)
     watched = None  # it judges all together
     expected_per_hour = None
-
-    def __init__(self, rate: float = FALSE_POSITIVE_RATE, most_silent: float = 0.0) -> None:
-        self._rate, self._most_silent = rate, most_silent
-        self._types: List[EventType]
-        self._model: PaperModel
-        self.threshold: Optional[float] = None
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
@@ -73,8 +68,8 @@ class Paper:
         """Choose s* by the common rule."""
         verdicts = [self.verdicts(recording) for recording in recordings]
         scores = [np.nan_to_num(verdict.score[~verdict.settling]) for verdict in verdicts]
-        rate, self.threshold = self._rate, common_threshold(scores, self._rate)
-        while self.threshold <= 0.0 and 2.0 * rate <= self._most_silent:
+        rate, self.threshold = self.rate, common_threshold(scores, self.rate)
+        while self.threshold <= 0.0 and 2.0 * rate <= self.most_silent:
             rate *= 2.0
             self.threshold = common_threshold(scores, rate)
 
@@ -89,27 +84,19 @@ class Paper:
                                  replace(encoded.events, event_types=()))
 
 
+@dataclass
 class Evidence:
-    """The evidence detector (`detector: evidence`).
+    """The evidence detector (`detector: evidence`)."""
 
-    Args:
-        graph: publisher, topic and subscriber, as the model holds it after a training while the
-            robot runs; empty: it was trained on bags alone.
-        tuning: the numbers of the method; None: the defaults.
-        budget: false alarms an hour that the limits allow.
-    """
-
-    def __init__(self, graph: Set[Tuple[str, str, str]], tuning: Optional[Tuning] = None,
-                 budget: float = limits.BUDGET) -> None:
-        self._graph = graph
-        self._tuning = tuning or Tuning()
-        self._budget = budget
-        self._trained: TrainedModel
-        self._model: EvidenceModel
+    # Publisher, topic and subscriber, as the model holds it after a training while the robot runs;
+    # empty: it was trained on bags alone.
+    graph: Set[Tuple[str, str, str]]
+    tuning: Tuning = field(default_factory=Tuning)  # the numbers of the method
+    budget: float = limits.BUDGET  # false alarms an hour that the limits allow
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays and gaps."""
-        learner = Learner(self._tuning, self._graph)
+        learner = Learner(self.tuning, self.graph)
         for recording in recordings:
             learner.add(recording.events)
         self._trained = learner.learn()
@@ -122,7 +109,7 @@ class Evidence:
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the limits."""
         self._trained.calibration, = limits.find(
-            self._trained, DetectorParameters().settle_time, [self._budget],
+            self._trained, DetectorParameters().settle_time, [self.budget],
             [recording.encoded(self._trained.event_types).events for recording in recordings])
 
     def judge(self, recording: WindowedEvents) -> Judged:
@@ -206,8 +193,7 @@ class Peer:
 
     def __init__(self, key: Callable[[EventType], Hashable]) -> None:
         self._key = key
-        self.bounds: Dict[Hashable, Any] = {}
-        """By topic or event type; one without is not watched."""
+        self.bounds: Dict[Hashable, Any] = {}  # by topic or event type; one without is not watched
         self._sources: Dict[Hashable, Dict[str, None]] = {}
         """By topic or event type, in the order of their coming."""
         self._last: Optional[Tuple[WindowedEvents, np.ndarray]] = None
@@ -265,15 +251,8 @@ class Peer:
         return stamps_by(recording, self._key)
 
 
-class Bounds(NamedTuple):
-    """The fewest and the most messages of a topic in SPAN that are normal; fewest > 0."""
-
-    fewest: float
-    most: float
-
-
 class FrequencyMonitor(Peer):
-    """FrequencyStatus; minimum and maximum are those of the messages in SPAN of the training.
+    """FrequencyStatus; the bounds are the fewest and the most messages in SPAN of the training.
 
     They are wider by one message, which may fall to either side of the end of SPAN by its phase
     alone: without that, the slowest topics decide on the threshold, and the fast ones are found a
@@ -288,11 +267,10 @@ class FrequencyMonitor(Peer):
         self._rate = rate
 
     @staticmethod
-    def deviation(bounds: Bounds, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
+    def deviation(bounds: Tuple[int, int], stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
         """See Peer."""
-        count = messages_in_span(stamps, ends)
-        return np.maximum((bounds.fewest - count) / bounds.fewest,
-                          (count - bounds.most) / bounds.most).clip(0.0)
+        count, (fewest, most) = messages_in_span(stamps, ends), bounds
+        return np.maximum((fewest - count) / fewest, (count - most) / most).clip(0.0)
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the periodic topics and their bounds."""
@@ -308,7 +286,7 @@ class FrequencyMonitor(Peer):
                 continue
             counts = np.concatenate(list(map(messages_in_span, stamps, full)))
             if len(counts) and counts.min() > 1:
-                self.bounds[topic] = Bounds(counts.min() - 1, counts.max() + 1)
+                self.bounds[topic] = counts.min() - 1, counts.max() + 1
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose the threshold by the common rule."""

@@ -18,8 +18,7 @@ from self_awareness.stamps import SECOND_NS, nanoseconds
 STARVATION_DOUBLING_S = 20.0
 """Sources that starve take twice as long at this time of the undisturbed recording [s]."""
 
-EACH = '*'
-"""Stands for each source in turn."""
+EACH = '*'  # stands for each source in turn
 
 FORMS = 'crash:SOURCE, slow:SOURCE:FACTOR, starve, late:SOURCE:SECONDS'
 _FORM = re.compile(r'(?P<crash>crash):(?P<crash_source>[^:]+)'
@@ -29,21 +28,16 @@ _FORM = re.compile(r'(?P<crash>crash):(?P<crash_source>[^:]+)'
 
 @dataclass(frozen=True)
 class InjectedFault:
-    """A fault to inject.
+    """A fault to inject."""
 
-    Args:
-        kind: crash: the source falls silent. slow: its delays stretch by a factor. starve: the
-            delays of all sources stretch, growing from 1 to twice as long after
-            STARVATION_DOUBLING_S. late: its events come some seconds later (negative: earlier)
-            in relation to all others; what would come after the end comes at the onset instead,
-            so that only order and delays are wrong: no silence, and the usual rate.
-        source: that it hits; None for starve, which hits all.
-        amount: the factor of slow, > 1; the seconds of late, not 0; else 0.
-    """
-
+    # crash: the source falls silent. slow: its delays stretch by a factor. starve: the delays of
+    # all sources stretch, growing from 1 to twice as long after STARVATION_DOUBLING_S. late: its
+    # events come some seconds later (negative: earlier) in relation to all others; what would come
+    # after the end comes at the onset instead, so that only order and delays are wrong: no
+    # silence, and the usual rate.
     kind: str
-    source: Optional[str] = None
-    amount: float = 0.0
+    source: Optional[str] = None  # that it hits; None for starve, which hits all
+    amount: float = 0.0  # the factor of slow, > 1; the seconds of late, not 0; else 0
 
     @classmethod
     def parse(cls, text: str) -> InjectedFault:

@@ -16,13 +16,11 @@ from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.reporting.text import first_lines, first_of
 from self_awareness.stamps import SECOND_NS
 
-START_UP_S = 30.0
-"""A start of the robot takes so long at most."""
+START_UP_S = 30.0  # a start of the robot takes so long at most
 LAST_S = 30.0
 """Who stops within the last seconds of a recording was most likely switched off before it."""
 
-FEWEST_GAPS = 30
-"""What came less often says nothing."""
+FEWEST_GAPS = 30  # what came less often says nothing
 
 _SETTLE_S = 5.0  # the detector leaves it out, too
 _TIMES, _LEAST_S = 3.0, 1.0
@@ -72,23 +70,15 @@ def without_start_up(recording: RecordingEvents) -> RecordingEvents:
 
 @dataclass(frozen=True)
 class Silence:
-    """The longest time without an event of a type in a recording; all in s.
+    """The longest time without an event of a type in a recording; all in s."""
 
-    Args:
-        begin_s: from the recording's first message.
-        length_s: of it.
-        head_s: until the first event of the type, which is no such time.
-        tail_s: since the last one, neither.
-    """
-
-    begin_s: float
-    length_s: float
-    head_s: float = 0.0
-    tail_s: float = 0.0
+    begin_s: float  # from the recording's first message
+    length_s: float  # of it
+    head_s: float = 0.0  # until the first event of the type, which is no such time
+    tail_s: float = 0.0  # since the last one, neither
 
 
-Silences = Mapping[EventType, Silence]
-"""Those of a recording, of what came often in it."""
+Silences = Mapping[EventType, Silence]  # those of a recording, of what came often in it
 
 
 def silences(recording: RecordingEvents) -> Silences:

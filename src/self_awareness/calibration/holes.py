@@ -23,19 +23,12 @@ _SHORTEST_PART_S = 5.0
 
 @dataclass(frozen=True)
 class Hole:
-    """A silence that one recording alone shows.
+    """A silence that one recording alone shows."""
 
-    Args:
-        part: the recording.
-        kind: the event type.
-        silence: of the event type, the longest of the recording.
-        others_s: the longest silence of all other recordings [s].
-    """
-
-    part: BagPart
-    kind: EventType
-    silence: Silence
-    others_s: float
+    part: BagPart  # the recording
+    kind: EventType  # the event type
+    silence: Silence  # of the event type, the longest of the recording
+    others_s: float  # the longest silence of all other recordings [s]
 
     @property
     def component(self) -> str:

@@ -18,24 +18,18 @@ from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
 from self_awareness.workers import InProcess, Workers
 
-BUDGET = 0.5
-"""False alarms an hour that limits are made for, by default."""
+BUDGET = 0.5  # false alarms an hour that limits are made for, by default
 
 
 @dataclass(frozen=True)
 class TrainedOn:
-    """A recording of the training.
+    """A recording of the training."""
 
-    Args:
-        part: the bag, or the part of it.
-        events: of the part, by ids of their own; None: read when they are needed, as the memory
-            may not hold those of all recordings.
-        silences: the longest one of every event type.
-    """
-
-    part: BagPart
+    part: BagPart  # the bag, or the part of it
+    # Of the part, by ids of their own; None: read when they are needed, as the memory may not hold
+    # those of all recordings.
     events: Optional[RecordingEvents] = None
-    silences: Silences = field(default_factory=dict)
+    silences: Silences = field(default_factory=dict)  # the longest one of every event type
 
     def __str__(self) -> str:
         return str(self.part)

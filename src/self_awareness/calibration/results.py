@@ -30,16 +30,11 @@ class FaultResult:
 
 @dataclass(frozen=True)
 class FalseAlarms:
-    """Alarms after persistence on the normal recordings.
+    """Alarms after persistence on the normal recordings."""
 
-    Args:
-        count: of them.
-        hours: of normal operation.
-        at_end: further ones, of who stopped before the recording ended: that is no false alarm.
-    """
-
-    count: int
-    hours: float
+    count: int  # of them
+    hours: float  # of normal operation
+    # Further ones, of who stopped before the recording ended: that is no false alarm.
     at_end: int = 0
 
     @property

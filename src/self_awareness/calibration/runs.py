@@ -19,11 +19,8 @@ from self_awareness.judging import Judge
 from self_awareness.recordings import DistinctRecordings, RecordingEvents, overlap
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
-NORMAL, ABNORMAL, LEFT_OUT = 0, 1, -1
-"""Labels of windows."""
-
-RECORDED = 'recorded'
-"""What a fault is called that was recorded, not injected."""
+NORMAL, ABNORMAL, LEFT_OUT = 0, 1, -1  # labels of windows
+RECORDED = 'recorded'  # what a fault is called that was recorded, not injected
 
 _BEFORE, _AFTER = 3 * SECOND_NS, 5 * SECOND_NS  # of an alarm: what led to it, and what is left
 _SHORTEST = 30 * SECOND_NS  # recording that a fault is injected into, if an excuse shortens it
@@ -31,21 +28,13 @@ _SHORTEST = 30 * SECOND_NS  # recording that a fault is injected into, if an exc
 
 @dataclass(frozen=True)
 class Run:
-    """A recording, as it was or with a fault injected, to be judged.
+    """A recording, as it was or with a fault injected, to be judged."""
 
-    Args:
-        source: the recording.
-        fault: empty: normal operation; RECORDED, or the fault injected.
-        onset: when the fault begins [ns]; not for normal operation.
-        relief: when it ends [ns]; not for normal operation.
-        injected: the fault injected; None: it is judged as it was.
-    """
-
-    source: RecordingEvents
-    fault: str = ''
-    onset: int = 0
-    relief: int = 0
-    injected: Optional[InjectedFault] = None
+    source: RecordingEvents  # the recording
+    fault: str = ''  # empty: normal operation; RECORDED, or the fault injected
+    onset: int = 0  # when the fault begins [ns]; not for normal operation
+    relief: int = 0  # when it ends [ns]; not for normal operation
+    injected: Optional[InjectedFault] = None  # the fault injected; None: it is judged as it was
 
     def events(self) -> RecordingEvents:
         """Return what is judged.
@@ -118,17 +107,11 @@ def injected_fault(recording: RecordingEvents, fault: InjectedFault, window: int
 
 
 class Injections(NamedTuple):
-    """Faults in recordings.
+    """Faults in recordings."""
 
-    Args:
-        runs: every fault in every recording that can show it.
-        silent: the faults that no recording can show.
-        excused: the recordings that are left out, as an excuse held all the time.
-    """
-
-    runs: List[Run]
-    silent: List[str]
-    excused: List[str]
+    runs: List[Run]  # every fault in every recording that can show it
+    silent: List[str]  # the faults that no recording can show
+    excused: List[str]  # the recordings that are left out, as an excuse held all the time
 
 
 def injections(faults: Sequence[InjectedFault], trained: TrainedModel,

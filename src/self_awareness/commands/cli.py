@@ -13,8 +13,8 @@ from typing import Any, Callable, Iterable, List, NoReturn, Optional, Sequence, 
 
 import rosgraph
 
-from self_awareness import (SHORTEST_WINDOW, VERSION, BagError, DetectorParameters, ModelFileError,
-                            TrainedModel, UnknownEvents, printable, recordings)
+from self_awareness import (VERSION, BagError, DetectorParameters, ModelFileError, TrainedModel,
+                            UnknownEvents, printable, recordings)
 from self_awareness.parts import BadRecordingsError, BagPart, Named
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
@@ -166,16 +166,6 @@ def seconds(text: str, low: float = 0.0) -> int:
     return nanoseconds(value)
 
 
-def duration(text: str) -> int:
-    """Argument type: a time in seconds, from a nanosecond to a day, as nanoseconds."""
-    return seconds(text, 1e-9)
-
-
-def window(text: str) -> int:
-    """Argument type: the length of a window in seconds, as nanoseconds."""
-    return seconds(text, SHORTEST_WINDOW / SECOND_NS)
-
-
 def offset(text: str) -> float:
     """Argument type: seconds from the beginning of a recording, 0 or more."""
     # A recording may be longer than a day, and the clock of one may have begun at 0.
@@ -210,8 +200,7 @@ def _number(text: str) -> float:
         return math.nan
 
 
-budget = above_zero('false alarms an hour')
-"""Argument type: how many false alarms limits allow."""
+budget = above_zero('false alarms an hour')  # argument type: how many false alarms limits allow
 
 
 def checked(parse: Callable[[str], _Value]) -> Callable[[str], _Value]:
@@ -234,8 +223,7 @@ def ends_in(*endings: str) -> Callable[[str], str]:
     return check
 
 
-plot_file = ends_in('.png', '.pdf', '.svg')
-"""Argument type: the name of a picture."""
+plot_file = ends_in('.png', '.pdf', '.svg')  # argument type: the name of a picture
 page_file = ends_in('.html')
 """Argument type: the name of a page; no browser would open another one."""
 

@@ -29,8 +29,7 @@ class _Operator:
     def __init__(self) -> None:
         self._changed = threading.Condition()
         self._last: Dict[str, DiagnosticStatus] = {}
-        self.error_since: Dict[str, float] = {}
-        """Unix time of the first ERROR of a status [s]."""
+        self.error_since: Dict[str, float] = {}  # Unix time of the first ERROR of a status [s]
         for topic in ('/diagnostics', '/diagnostics_agg'):
             rospy.Subscriber(topic, DiagnosticArray, self._on_diagnostics)
 

@@ -5,10 +5,11 @@ import argparse
 import os
 from contextlib import closing
 from dataclasses import replace
+from functools import partial
 from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
-from self_awareness import (BagError, EncodingRules, TrainedModel, accepted_file, encoding_file,
-                            progress)
+from self_awareness import (SHORTEST_WINDOW, BagError, EncodingRules, TrainedModel, accepted_file,
+                            encoding_file, progress)
 from self_awareness.calibration import heads_and_tails, holes
 from self_awareness.calibration.heads_and_tails import Silences
 from self_awareness.calibration.limits import TooLittleError
@@ -74,9 +75,7 @@ def _train(arguments: argparse.Namespace) -> None:
         if counting.encoding is None and model.encoding.source == 'none':
             print('no bag names the senders of its messages: sources are not told apart '
                   '(source: none)')
-        model.graph = model.graph | graph.edges(model.encoding)
-        model.hosts = graph.hosts_of_sources(model.encoding)
-        model.unheard = graph.unheard(model.encoding)
+        graph.add_to(model, model.encoding)
         try:
             if model.detectors != PAPER:
                 many_bags.preliminary_limits(trained, workers)
@@ -219,10 +218,11 @@ def _parser() -> argparse.ArgumentParser:
     group.add_argument('--detector', choices=(EVIDENCE, PAPER, BOTH),
                        help='train for this detector; no other one can judge by the model '
                             f'(default: {Counting.detector})')
-    group.add_argument('--bin', type=cli.duration, metavar='S',
+    group.add_argument('--bin', type=partial(cli.seconds, low=1e-9), metavar='S',
                        help="size of the bins of the paper's delays in s (default: "
                             f'{Counting.bin_size / SECOND_NS:g})')
-    group.add_argument('--window', type=cli.window, metavar='S',
+    group.add_argument('--window', metavar='S',
+                       type=partial(cli.seconds, low=SHORTEST_WINDOW / SECOND_NS),
                        help='length of the windows that are scored, in s (default: '
                             f'{Counting.window / SECOND_NS:g})')
     group.add_argument('--horizon', type=cli.seconds, metavar='S',

@@ -10,8 +10,7 @@ import math
 from statistics import median
 from typing import Sequence, Tuple
 
-LEVEL = 0.01
-"""Probability that chance alone lists anything, all quantities together."""
+LEVEL = 0.01  # probability that chance alone lists anything, all quantities together
 
 _PRIOR = 8
 _MEDIAN_OF_CHI_SQUARE = 0.4549

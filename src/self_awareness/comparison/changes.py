@@ -19,8 +19,7 @@ from self_awareness.stamps import SECOND_NS
 GONE, ENDED, NEW, RATE, GAP, DELAY = 'gone', 'ended', 'new', 'rate', 'gap', 'delay'
 """What may have changed."""
 
-FEWEST_OF_HALF = 25
-"""Delays are not compared if a half of a side has fewer."""
+FEWEST_OF_HALF = 25  # delays are not compared if a half of a side has fewer
 
 _LEAST_OF_RATE, _LEAST_OF_PERIOD, _LEAST_OF_GAP_S = 0.04, 0.2, 0.01  # changes that matter
 _CLEARLY_LONGER = 3
@@ -31,46 +30,29 @@ _MEDIAN = 0.5
 
 @dataclass(frozen=True)
 class Change:
-    """Something that changed.
+    """Something that changed."""
 
-    Args:
-        what: GONE, ENDED, NEW, RATE, GAP or DELAY.
-        kind: event type.
-        other: the one that the delay counts from; None: it is no delay.
-        before: rate [Hz], longest usual gap [s] or median delay [s]; None: it is new.
-        after: likewise; None: it is gone.
-        effect: its size in units of the least effect; infinite: new, gone or ended.
-        whole: its whole source is new, gone or ended.
-        end: how it ended in a recording; None: it did not.
-    """
-
-    what: str
-    kind: Kind
-    other: Optional[Kind]
+    what: str  # GONE, ENDED, NEW, RATE, GAP or DELAY
+    kind: Kind  # event type
+    other: Optional[Kind]  # the one that the delay counts from; None: it is no delay
+    # Rate [Hz], longest usual gap [s] or median delay [s]; None: it is new.
     before: Optional[float]
-    after: Optional[float]
-    effect: float
-    whole: bool = False
-    end: Optional[End] = None
+    after: Optional[float]  # likewise; None: it is gone
+    effect: float  # its size in units of the least effect; infinite: new, gone or ended
+    whole: bool = False  # its whole source is new, gone or ended
+    end: Optional[End] = None  # how it ended in a recording; None: it did not
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """All that is to be said.
+    """All that is to be said."""
 
-    Args:
-        before: one side.
-        after: the other.
-        changes: what matters most comes first.
-        unsure: event types of one side only that the other may miss by chance.
-        compared_delays: number of pairs whose delays were compared; None: no side knows which
-            event types have to do with each other.
-    """
-
-    before: Side
-    after: Side
-    changes: List[Change]
-    unsure: List[Kind]
+    before: Side  # one side
+    after: Side  # the other
+    changes: List[Change]  # what matters most comes first
+    unsure: List[Kind]  # event types of one side only that the other may miss by chance
+    # Number of pairs whose delays were compared; None: no side knows which event types have to do
+    # with each other.
     compared_delays: Optional[int]
 
     @property

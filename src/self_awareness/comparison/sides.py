@@ -16,37 +16,25 @@ from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training.counting import Counting
 
-Kind = Tuple[str, str, str]
-"""Source, scope and type of an event type."""
+Kind = Tuple[str, str, str]  # source, scope and type of an event type
 
 
 @dataclass(frozen=True)
 class End:
-    """How an event type ended in a recording.
+    """How an event type ended in a recording."""
 
-    Args:
-        last: its last event [s] from the recording's first message.
-        silent: time from then to the recording's end [s].
-    """
-
-    last: float
-    silent: float
+    last: float  # its last event [s] from the recording's first message
+    silent: float  # time from then to the recording's end [s]
 
 
 @dataclass(frozen=True)
 class Side:
-    """One side: what was counted, in two halves.
+    """One side: what was counted, in two halves."""
 
-    Args:
-        name: of its file.
-        model: with all counts of the evidence detector.
-        is_recording: it is one or several, and not a model.
-        ends: of each event type of recordings, its last event and how long it was silent then.
-    """
-
-    name: str
-    model: TrainedModel
-    is_recording: bool
+    name: str  # of its file
+    model: TrainedModel  # with all counts of the evidence detector
+    is_recording: bool  # it is one or several, and not a model
+    # Of each event type of recordings, its last event and how long it was silent then.
     ends: Dict[Kind, End] = field(default_factory=dict)
 
     @cached_property
@@ -90,7 +78,7 @@ def key_of(kind: EventType) -> Kind:
     return kind.source, kind.scope, kind.type
 
 
-def read_sides(before: str, after: str, skip_bad: bool = False) -> Tuple[Side, Side, List[str]]:
+def read_sides(before: str, after: str, skip_bad: bool) -> Tuple[Side, Side, List[str]]:
     """Return the two sides; recordings are counted with the encoding of the model.
 
     Args:

@@ -22,44 +22,27 @@ _SHORTEST_NS = 60 * SECOND_NS
 
 @dataclass(frozen=True)
 class Heard:
-    """A recording, as a model judges it.
+    """A recording, as a model judges it."""
 
-    Args:
-        part: the whole recording.
-        recording: what a model file says of it.
-        origin: stamp of its first message [ns].
-        left_out: why it says nothing of a drift; empty: it does.
-        why: the same in more words; may be empty.
-        shares: the largest share of its limit, by component; empty: it is left out.
-    """
-
-    part: BagPart
-    recording: Recording
-    origin: int
-    left_out: str = ''
-    why: str = ''
+    part: BagPart  # the whole recording
+    recording: Recording  # what a model file says of it
+    origin: int  # stamp of its first message [ns]
+    left_out: str = ''  # why it says nothing of a drift; empty: it does
+    why: str = ''  # the same in more words; may be empty
+    # The largest share of its limit, by component; empty: it is left out.
     shares: Dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
 class Age:
-    """What recordings say of a model's age.
+    """What recordings say of a model's age."""
 
-    Args:
-        budget: false alarms an hour that the model's limits allow.
-        learned_until: end of the last recording that it was learned from, or calibrated on [ns].
-        heard: the recordings, in the order of time.
-        drift: by component; empty: nothing says anything of it.
-        samples: starts of the robot, or days of one, that the drift comes from.
-        needed: evidence from which on a drift is told.
-    """
-
-    budget: float
-    learned_until: int
-    heard: List[Heard]
-    drift: Dict[str, ComponentDrift]
-    samples: int
-    needed: float
+    budget: float  # false alarms an hour that the model's limits allow
+    learned_until: int  # end of the last recording that it was learned from, or calibrated on [ns]
+    heard: List[Heard]  # the recordings, in the order of time
+    drift: Dict[str, ComponentDrift]  # by component; empty: nothing says anything of it
+    samples: int  # starts of the robot, or days of one, that the drift comes from
+    needed: float  # evidence from which on a drift is told
 
     @property
     def counted(self) -> List[Heard]:

@@ -17,8 +17,7 @@ from self_awareness import (BagError, EncodingRules, read_events, recordings_in_
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
 
-HEARD_S = 10.0
-"""For so long after an event the robot counts as heard [s]."""
+HEARD_S = 10.0  # for so long after an event the robot counts as heard [s]
 
 _ACTIVE = '.active'
 _LOCK = '.lock'
@@ -28,19 +27,12 @@ _POLL_S = 0.1
 
 @dataclass(frozen=True)
 class Log:
-    """A recording in an event log.
+    """A recording in an event log."""
 
-    Args:
-        part: the whole recording.
-        seconds: its length.
-        robot_start: when the robot was started [ns].
-        heard: for how long the robot was heard [s].
-    """
-
-    part: BagPart
-    seconds: float
-    robot_start: int
-    heard: float = 0.0
+    part: BagPart  # the whole recording
+    seconds: float  # its length
+    robot_start: int  # when the robot was started [ns]
+    heard: float = 0.0  # for how long the robot was heard [s]
 
 
 class LogFolder:

@@ -16,8 +16,6 @@ from self_awareness.parts import BagPart
 from self_awareness.recordings import overlap
 from self_awareness.stamps import SECOND_NS
 
-_BEFORE = '.before'
-
 
 def divided(trained: TrainedModel, age: Age, start_up: float) -> Division:
     """Return what of the recordings is trained on, and what the limits are found on.
@@ -69,7 +67,10 @@ def take(new: str, model: str) -> str:
         raise ValueError(f'{new}: it has no limits, so no monitor would raise an alarm by it; '
                          'find them with rosrun self_awareness calibrate')
     _, left = accepted_file.learned(accepted_file.beside(model), taken)
-    before = _free_name(model)
+    before, number = f'{model}.before', 1
+    while os.path.exists(before):
+        number += 1
+        before = f'{model}.before_{number}'
     with replacing(before) as temporary:
         shutil.copyfile(model, temporary)
     accepted_file.keep(accepted_file.beside(model), before)
@@ -80,11 +81,3 @@ def take(new: str, model: str) -> str:
         if os.path.exists(path):
             os.remove(path)
     return before
-
-
-def _free_name(model: str) -> str:
-    name, number = f'{model}{_BEFORE}', 1
-    while os.path.exists(name):
-        number += 1
-        name = f'{model}{_BEFORE}_{number}'
-    return name

@@ -37,8 +37,7 @@ class Recorder:
                  lock: int) -> None:
         self.problem = ''
         """Why nothing is recorded, in its words; empty: it is, or has said nothing yet."""
-        self.events = 0
-        """How many it has heard."""
+        self.events = 0  # how many it has heard
         self._prefix = prefix
         self._file = ''  # that is written
         self._heard = 0.0  # for how long, since the file began [s]

@@ -6,8 +6,7 @@ from typing import Any, List, Tuple
 from self_awareness import printable
 from self_awareness.live_view.said import LEVELS, STALE_S, Said, is_unknown, level_of
 
-Line = Tuple[str, str]
-"""A style (one of LEVELS, head, faint, or none) and a text."""
+Line = Tuple[str, str]  # a style (one of LEVELS, head, faint, or none) and a text
 
 _MOST_INCIDENTS = 5
 _MOST_MUTES = 3

@@ -8,12 +8,10 @@ from typing import Any, Callable, Deque, Dict, List, Optional
 
 from self_awareness.status_names import task_of
 
-LEVELS = ('OK', 'WARN', 'ERROR', 'STALE')
-"""As of diagnostic_msgs/DiagnosticStatus."""
+LEVELS = ('OK', 'WARN', 'ERROR', 'STALE')  # as of diagnostic_msgs/DiagnosticStatus
 SORTS = ('level', 'name', 'rate', 'age', 'limit')
 """By what components can be sorted; `level` puts the worst first."""
-STALE_S = 5.0
-"""A monitor that was not heard for longer is stale, as the aggregator has it."""
+STALE_S = 5.0  # a monitor that was not heard for longer is stale, as the aggregator has it
 
 _BARS = '▁▂▃▄▅▆▇█'
 _LONGEST_CURVE = 400
@@ -33,10 +31,8 @@ class Said:
         self._statuses: Dict[str, Any] = {}
         self._components: Any = None  # Components; None: they were not told
         self._scores: Deque[float] = deque(maxlen=_LONGEST_CURVE)
-        self.verdict: Any = None
-        """The last SelfAwareness; None: there was none."""
-        self.incidents: List[Any] = []
-        """The last ones (Incident), the oldest first."""
+        self.verdict: Any = None  # the last SelfAwareness; None: there was none
+        self.incidents: List[Any] = []  # the last ones (Incident), the oldest first
 
     def on_status(self, verdict: Any) -> None:
         """Take in the verdict on a window (SelfAwareness)."""

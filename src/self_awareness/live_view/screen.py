@@ -60,8 +60,7 @@ class Screen:
         self._frame = urwid.Frame(urwid.ListBox(self._listed), self._head, self._foot)
         self._loop = urwid.MainLoop(self._frame, [*_PALETTE, *_PALETTE_SELECTED],
                                     unhandled_input=self._on_key, handle_mouse=False)
-        self.why = ''
-        """Why it ended; empty: somebody has quit."""
+        self.why = ''  # why it ended; empty: somebody has quit
 
     def run(self) -> None:
         """Draw until it is over."""

@@ -11,8 +11,7 @@ from self_awareness import printable, yaml_file
 from self_awareness.output_files import replacing
 from self_awareness.yaml_section import Section
 
-MOST = 200
-"""Actions that are kept: the last ones, all of an hour at least (limits of the rules)."""
+MOST = 200  # actions that are kept: the last ones, all of an hour at least (limits of the rules)
 ENDING = '.actions'
 
 _MOST_STAMP = 2 ** 63
@@ -22,12 +21,7 @@ _BOOT_ID = Path('/proc/sys/kernel/random/boot_id')
 
 @dataclass(frozen=True)
 class Action:
-    """A step that was begun: what RecoveryAction.msg tells of it, with `begin` in ns since 1970.
-
-    Args:
-        steady: when it was begun by the steady clock of this boot of the machine, which nobody
-            sets [ns]; 0: it was another boot.
-    """
+    """A step that was begun, as RecoveryAction.msg tells of it; `begin` is in ns since 1970."""
 
     incident: int
     component: str
@@ -40,6 +34,8 @@ class Action:
     over: bool = False
     success: bool = False
     result: str = ''
+    # When it was begun by the steady clock of this boot of the machine, which nobody sets [ns]; 0:
+    # it was another boot.
     steady: int = 0
 
     def told(self) -> Dict[str, Any]:
@@ -51,17 +47,12 @@ class Action:
 
 @dataclass(frozen=True)
 class Hold:
-    """Nothing is done for a while.
+    """Nothing is done for a while."""
 
-    Args:
-        until: when [ns since 1970]; 0: it is done.
-        steady: the same by the steady clock of this boot [ns]; 0: it was set in another boot.
-        by: who wants it, in words, which is not kept.
-    """
-
-    until: int = 0
+    until: int = 0  # when [ns since 1970]; 0: it is done
+    # The same by the steady clock of this boot [ns]; 0: it was set in another boot.
     steady: int = 0
-    by: str = field(default='', compare=False)
+    by: str = field(default='', compare=False)  # who wants it, in words, which is not kept
 
     def left(self, steady: int, wall: int) -> int:
         """Return for how long from now on [ns], 0 or more; see History.ages()."""

@@ -14,21 +14,14 @@ moments."""
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong with a component.
+    """What is wrong with a component."""
 
-    Args:
-        incident: id of the one that is open.
-        component: that is to blame for it, or abnormal besides.
-        kind: what is wrong with it.
-        stands: it is abnormal at this moment; false: the alarm is only held, or waits.
-        since: of one that has died, when it was first known that it does not come [s]; each time
-            that it comes, this begins anew. Other kinds come and go: it is not known.
-    """
-
-    incident: int
-    component: str
-    kind: str
-    stands: bool
+    incident: int  # id of the one that is open
+    component: str  # that is to blame for it, or abnormal besides
+    kind: str  # what is wrong with it
+    stands: bool  # it is abnormal at this moment; false: the alarm is only held, or waits
+    # Of one that has died, when it was first known that it does not come [s]; each time that it
+    # comes, this begins anew. Other kinds come and go: it is not known.
     since: float = float('-inf')
 
 
@@ -44,20 +37,13 @@ class Order:
 
 @dataclass
 class Climb:
-    """How far a rule is with what it mends.
-
-    Args:
-        next_at: when a step may come, if the fault stands then [s].
-        tried: steps so far.
-        gone_since: when the fault was gone; None: it is there.
-        gave_up: why nothing more will be done; empty: more will.
-    """
+    """How far a rule is with what it mends."""
 
     rule: Rule
-    next_at: float
-    tried: int = 0
-    gone_since: Optional[float] = None
-    gave_up: str = ''
+    next_at: float  # when a step may come, if the fault stands then [s]
+    tried: int = 0  # steps so far
+    gone_since: Optional[float] = None  # when the fault was gone; None: it is there
+    gave_up: str = ''  # why nothing more will be done; empty: more will
 
 
 class Ladder:

@@ -11,17 +11,14 @@ import rosgraph.network
 from self_awareness import is_own_type
 from self_awareness.recovery.xml_rpc import NoAnswer, ask
 
-ANSWER_S = 1.0
-"""A node that is well answers sooner [s]."""
-MOST_OF_NODE = 1 << 16
-"""Bytes of an answer of a node."""
+ANSWER_S = 1.0  # a node that is well answers sooner [s]
+MOST_OF_NODE = 1 << 16  # bytes of an answer of a node
 _MASTER_S = 5.0
 _MOST_OF_MASTER = 1 << 24  # the state of a large robot
 _ROSLAUNCH_S = 3.0
 _MOST_OF_ROSLAUNCH = 1 << 22  # with the whole environment of a node
 _MOST_MACHINES = 100
-_FOR_ALL = {'/rosout'}
-"""Topics that nobody needs."""
+_FOR_ALL = {'/rosout'}  # topics that nobody needs
 
 
 class Launchers:

@@ -14,8 +14,7 @@ KINDS = ('silent', 'topic silent', 'unanswered', 'slow', 'fast', 'late', 'early'
          'never came', 'stale', 'lossy', 'other size', 'stuck')
 """Of incidents that blame a component of the robot, as SelfAwareness.msg has them."""
 
-MOST_STOPPED = 5
-"""Nodes that a step may stop: it mends a part of the robot."""
+MOST_STOPPED = 5  # nodes that a step may stop: it mends a part of the robot
 
 BLAME_NOBODY = ('busy machine', 'all silent', 'two senders', 'slower clock')
 """Of incidents: there is nothing to repair."""
@@ -64,27 +63,18 @@ class Rule:
 
 @dataclass(frozen=True)
 class Rules:
-    """All that a recovery may do.
+    """All that a recovery may do."""
 
-    Args:
-        rules: no two fit the same incident.
-        delay: an alarm stands for so long before the first step; what is gone for as long is
-            healed [s].
-        wait: a first step has so long to help; each further one of the incident twice as long as
-            the one before [s].
-        grace: a node has so long to end, before the next way to stop it [s].
-        limit: most steps in an hour, for each rule.
-        limit_of_all: most steps in an hour, of all rules together.
-        dry_run: nothing is done, but said.
-    """
-
-    rules: Tuple[Rule, ...]
+    rules: Tuple[Rule, ...]  # no two fit the same incident
+    # An alarm stands for so long before the first step; what is gone for as long is healed [s].
     delay: float = 5.0
+    # A first step has so long to help; each further one of the incident twice as long as the one
+    # before [s].
     wait: float = 20.0
-    grace: float = 3.0
-    limit: int = 3
-    limit_of_all: int = 6
-    dry_run: bool = False
+    grace: float = 3.0  # a node has so long to end, before the next way to stop it [s]
+    limit: int = 3  # most steps in an hour, for each rule
+    limit_of_all: int = 6  # most steps in an hour, of all rules together
+    dry_run: bool = False  # nothing is done, but said
 
     @property
     def nodes(self) -> Tuple[str, ...]:

@@ -10,13 +10,11 @@ from self_awareness.recovery.ladder import Fault
 from self_awareness.recovery.rules import BLAME_NOBODY
 from self_awareness.stamps import nanoseconds
 
-FRESH_S = 2.0
-"""A monitor that says nothing for so long is not believed any more [s]."""
+FRESH_S = 2.0  # a monitor that says nothing for so long is not believed any more [s]
 BESIDE_S = 5.0
 """Who is not to blame for the alarm is named for so long before it is a fault of its own [s]: who
 is well is named now and then."""
-_ABNORMAL_S = 0.5
-"""Who was abnormal so recently is so now [s]: not every window of a slow node is."""
+_ABNORMAL_S = 0.5  # who was abnormal so recently is so now [s]: not every window of a slow node is
 
 _ERROR = 2  # of SelfAwareness
 _DIED = ('silent', 'topic silent', 'unanswered')
@@ -24,20 +22,15 @@ _DIED = ('silent', 'topic silent', 'unanswered')
 
 @dataclass
 class _Named:
-    """A component that abnormal windows name.
+    """A component that abnormal windows name."""
 
-    Args:
-        since, at: when they named it first and last, without a pause of _ABNORMAL_S [s].
-        kinds: what is wrong with it, the most likely first; of the last such window.
-        dead_since: what has died, if something has, is known not to have come since then [s].
-        later: the alarm named it after it was raised, which it only does with those that are
-            abnormal by themselves.
-    """
-
+    # When they named it first and last, without a pause of _ABNORMAL_S [s].
     since: float
     at: float
-    kinds: List[str]
-    dead_since: float
+    kinds: List[str]  # what is wrong with it, the most likely first; of the last such window
+    dead_since: float  # what has died, if something has, is known not to have come since then [s]
+    # The alarm named it after it was raised, which it only does with those that are abnormal by
+    # themselves.
     later: bool
 
 

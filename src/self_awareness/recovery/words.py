@@ -7,8 +7,7 @@ from self_awareness.recovery.history import Action
 from self_awareness.recovery.ladder import Climb
 from self_awareness.stamps import utc
 
-OK, WARN, ERROR = 0, 1, 2
-"""Levels of diagnostic_msgs/DiagnosticStatus."""
+OK, WARN, ERROR = 0, 1, 2  # levels of diagnostic_msgs/DiagnosticStatus
 
 _MOST_SHOWN = 10
 

@@ -13,8 +13,7 @@ from self_awareness.reporting.file_summary import summarise_version
 from self_awareness.reporting.text import seconds_of
 from self_awareness.stamps import SECOND_NS
 
-_RELATIONS = ('pairs', 'deadlines')
-"""The channels that look at two event types."""
+_RELATIONS = ('pairs', 'deadlines')  # the channels that look at two event types
 
 
 def summarise(model: TrainedModel) -> Dict[str, Any]:

@@ -13,27 +13,19 @@ from self_awareness.parts import BagPart
 
 @dataclass(frozen=True)
 class Counting:
-    """How bags are counted.
+    """How bags are counted."""
 
-    Args:
-        encoding: how messages become events; None: by the defaults, and without sources where no
-            bag names any.
-        bin_size: of delays [ns].
-        window: length of a window [ns].
-        horizon_bins: delays of so many bins or more share one; 0: unbounded.
-        detector: who is counted for: evidence, paper or both. The paper's counts take three
-            quarters of the time, and most of the file.
-        tuning: the numbers of the evidence detector.
-        rename: rules, after those of the encoding.
-    """
-
+    # How messages become events; None: by the defaults, and without sources where no bag names
+    # any.
     encoding: Optional[EncodingRules] = None
-    bin_size: int = 10_000_000
-    window: int = DEFAULT_WINDOW
-    horizon_bins: int = 0
+    bin_size: int = 10_000_000  # of delays [ns]
+    window: int = DEFAULT_WINDOW  # length of a window [ns]
+    horizon_bins: int = 0  # delays of so many bins or more share one; 0: unbounded
+    # Who is counted for: evidence, paper or both. The paper's counts take three quarters of the
+    # time, and most of the file.
     detector: str = EVIDENCE
-    tuning: Tuning = field(default_factory=Tuning)
-    rename: Tuple[Tuple[str, str], ...] = ()
+    tuning: Tuning = field(default_factory=Tuning)  # the numbers of the evidence detector
+    rename: Tuple[Tuple[str, str], ...] = ()  # rules, after those of the encoding
 
     def renamed(self, encoding: EncodingRules) -> EncodingRules:
         """Return a copy of an encoding that renames what is to be renamed, too."""

@@ -35,18 +35,12 @@ _MOST_EVENTS = 20_000_000
 
 @dataclass
 class Trained:
-    """What came out of a training.
+    """What came out of a training."""
 
-    Args:
-        model: of all good bags.
-        trained_on: the good bags.
-        bad: what is wrong with the others.
-        numbered: names that differ by a number alone, in words.
-    """
-
-    model: TrainedModel
-    trained_on: List[TrainedOn]
-    bad: List[str]
+    model: TrainedModel  # of all good bags
+    trained_on: List[TrainedOn]  # the good bags
+    bad: List[str]  # what is wrong with the others
+    # Names that differ by a number alone, in words.
     numbered: List[str] = field(default_factory=list)
 
 
@@ -136,23 +130,15 @@ class _Batch:
 
 @dataclass
 class _Sum:
-    """What was counted in neighbouring bags.
+    """What was counted in neighbouring bags."""
 
-    Args:
-        most_events: that are kept.
-        model: the sum, after what was there before; None: no bag was good.
-        trained_on: the good bags.
-        lines: about each bag that is done.
-        bad: what is wrong with those that were skipped.
-        error: what is wrong with the bag that ended it; None: nothing.
-    """
-
-    most_events: int
+    most_events: int  # that are kept
+    # The sum, after what was there before; None: no bag was good.
     model: Optional[TrainedModel] = None
-    trained_on: List[TrainedOn] = field(default_factory=list)
-    lines: List[str] = field(default_factory=list)
-    bad: List[str] = field(default_factory=list)
-    error: Optional[str] = None
+    trained_on: List[TrainedOn] = field(default_factory=list)  # the good bags
+    lines: List[str] = field(default_factory=list)  # about each bag that is done
+    bad: List[str] = field(default_factory=list)  # what is wrong with those that were skipped
+    error: Optional[str] = None  # what is wrong with the bag that ended it; None: nothing
     _kept: int = field(default=0, init=False)
 
     def recordings(self) -> Iterable[Tuple[TrainedOn, Recording]]:
@@ -231,9 +217,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
         model = learner.model(watch=False)
         graph = (RobotGraph.beside(part.files) if summary.encoding is None  # no event log
                  else RobotGraph(*summary.graph))
-        model.graph = graph.edges(encoding)
-        model.hosts = graph.hosts_of_sources(encoding)
-        model.unheard = graph.unheard(encoding)
+        graph.add_to(model, encoding)
         model.add_subscriptions(lasting_subscriptions(summary, encoding))
     except BagError as error:
         raise _BadBag(str(error)) from error

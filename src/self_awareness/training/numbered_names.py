@@ -20,15 +20,12 @@ from self_awareness.reporting.text import first_of
 from self_awareness.training.counting import Counting
 from self_awareness.workers import Workers
 
-Renames = List[Tuple[str, str]]
-"""Patterns and names, as in EncodingRules.rename."""
+Renames = List[Tuple[str, str]]  # patterns and names, as in EncodingRules.rename
 
 _DIGITS = re.compile('[0-9]+')
 _LETTER = re.compile('[A-Za-z]')
-_ANY = '#'
-"""Stands for a number in a name; no topic has it."""
-_MOST_NUMBERS = 4
-"""In a part of a name between two slashes; what has more is no name of a person."""
+_ANY = '#'  # stands for a number in a name; no topic has it
+_MOST_NUMBERS = 4  # in a part of a name between two slashes; what has more is no name of a person
 _MOST_SHOWN = 3
 _REST, _REST_TAKEN = '(/.*)?', r'\1'
 """What follows a name: topics in a node's namespace have its number, too."""
@@ -36,16 +33,11 @@ _REST, _REST_TAKEN = '(/.*)?', r'\1'
 
 @dataclass(frozen=True)
 class Heard:
-    """What was heard in a recording.
+    """What was heard in a recording."""
 
-    Args:
-        robot: its name; empty: not known.
-        start: of the robot; recordings of one start have the same.
-        sources, scopes: what its events call nodes and topics.
-    """
-
-    robot: str
-    start: str
+    robot: str  # its name; empty: not known
+    start: str  # of the robot; recordings of one start have the same
+    # What its events call nodes and topics.
     sources: FrozenSet[str]
     scopes: FrozenSet[str]
 
@@ -71,15 +63,10 @@ class Heard:
 
 @dataclass(frozen=True)
 class Numbered:
-    """Names that differ by a number alone.
+    """Names that differ by a number alone."""
 
-    Args:
-        rename: that makes one of them.
-        examples: the names, in order.
-    """
-
-    rename: Tuple[str, str]
-    examples: Tuple[str, ...]
+    rename: Tuple[str, str]  # that makes one of them
+    examples: Tuple[str, ...]  # the names, in order
 
     def __str__(self) -> str:
         return f'{first_of(self.examples, _MOST_SHOWN)}: differ by a number alone'

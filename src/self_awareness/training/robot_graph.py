@@ -5,8 +5,8 @@ import os
 from dataclasses import dataclass, field
 from typing import Dict, Iterable, Set, Tuple
 
-from self_awareness import (EncodingRules, FileVersion, resolved_name, unheard_publications,
-                            yaml_file)
+from self_awareness import (EncodingRules, FileVersion, TrainedModel, resolved_name,
+                            unheard_publications, yaml_file)
 from self_awareness.output_files import replacing
 from self_awareness.yaml_section import Section
 
@@ -18,23 +18,18 @@ _HEADER = """\
 _VERSION = 'version'
 """Key of what the file says of its version (docs/monitor.md); no topic is called so."""
 
-_HOSTS = 'hosts'
-"""Key of the computers of nodes; no topic is called so either."""
+_HOSTS = 'hosts'  # key of the computers of nodes; no topic is called so either
 
 _MOST_FORMAT = (1 << 32) - 1
 
 
 @dataclass
 class RobotGraph:
-    """Who publishes and who subscribes to what, by topic; nodes by their full names.
-
-    Args:
-        publishers, subscribers: by topic.
-        hosts: computers of nodes, by their names or addresses; those that are known.
-    """
+    """Who publishes and who subscribes to what, by topic; nodes by their full names."""
 
     publishers: _Nodes = field(default_factory=dict)
     subscribers: _Nodes = field(default_factory=dict)
+    # Computers of nodes, by their names or addresses; those that are known.
     hosts: Dict[str, str] = field(default_factory=dict)
 
     def add(self, other: RobotGraph) -> bool:
@@ -70,6 +65,12 @@ class RobotGraph:
     def unheard(self, encoding: EncodingRules) -> Set[Tuple[str, str]]:
         """Return what no node of the robot subscribes to, as in TrainedModel.unheard."""
         return unheard_publications(encoding, self.publishers, self.subscribers)
+
+    def add_to(self, model: TrainedModel, encoding: EncodingRules) -> None:
+        """Let a model know it, too, by the names that the encoding gives."""
+        model.graph = model.graph | self.edges(encoding)
+        model.hosts = self.hosts_of_sources(encoding)
+        model.unheard = self.unheard(encoding)
 
     def save(self, path: str) -> None:
         """Write a file that load() reads."""

@@ -11,10 +11,8 @@ from self_awareness import BagError, EncodingRules, read_numbers
 from self_awareness.parts import BagPart
 from self_awareness.workers import Workers
 
-_MOST_OF_BAG = 100_000
-"""Values that are kept of a bag: every second, third, ... one of more."""
-_DIGITS = 4
-"""Of a bound, if they are enough."""
+_MOST_OF_BAG = 100_000  # values that are kept of a bag: every second, third, ... one of more
+_DIGITS = 4  # of a bound, if they are enough
 
 
 def learned(encoding: EncodingRules, parts: Sequence[BagPart], workers: Workers,

@@ -32,10 +32,8 @@ Heard = Callable[[int], np.ndarray]
 class Emission:
     """Decides when an output sends."""
 
-    trigger: Optional[int] = None
-    """Index of the output that it answers to."""
-    activity: str = ''
-    """Name of what it sends in only; empty: it always sends."""
+    trigger: Optional[int] = None  # index of the output that it answers to
+    activity: str = ''  # name of what it sends in only; empty: it always sends
 
     def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
         """Return when output number `index` sends, before any fault."""

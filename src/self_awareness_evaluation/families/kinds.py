@@ -37,14 +37,12 @@ class Draft:
         self.timing = Timer()
         """What timers that are added from now on are like: clocks differ by up to its `ppm`, and
         half of them loop if it does."""
-        self.namespace = ''
-        """Put before all names that are added from now on, like `/robot1`."""
+        self.namespace = ''  # put before all names that are added from now on, like `/robot1`
         self.conditions = Conditions()
         self.outputs: List[Output] = []
         self.activities: Dict[str, Activity] = {}
         self.subscriptions: Set[Tuple[str, str]] = set()
-        self.far: FrozenSet[str] = frozenset()
-        """Who is on the other side of the wireless link."""
+        self.far: FrozenSet[str] = frozenset()  # who is on the other side of the wireless link
         self._clocks: Dict[str, float] = {}
 
     def robot(self) -> Robot:

@@ -8,8 +8,7 @@ from self_awareness.reporting.report import figures
 from self_awareness.reporting.report.page import save_page
 from self_awareness.stamps import SECOND_NS
 
-MOST_FIGURES = 12
-"""Changes whose delays are drawn, at most so many."""
+MOST_FIGURES = 12  # changes whose delays are drawn, at most so many
 
 
 def save_diff(path: str, comparison: Comparison) -> None:

@@ -15,8 +15,7 @@ from self_awareness.reporting.report.intervals import ALARM, Interval
 from self_awareness.reporting.report.timeline import SHOWN_LIMITS, Lanes, Timeline
 from self_awareness.reporting.text import delay, percent
 
-Figure = Dict[str, Any]
-"""Traces and layout of a plot (`data`, `layout`)."""
+Figure = Dict[str, Any]  # traces and layout of a plot (`data`, `layout`)
 
 Bins = List[Tuple[float, float]]
 """Begin [s] of each bin of delays, and the share of the delays in it [%]."""

@@ -45,8 +45,8 @@ def headline(main: Interval, together: Sequence[str], times: int) -> str:
         is_silence=silence is not None, begin=clock(begin) if begin > 0 else '',
         end=clock(main.end) if main.cleared and not main.of.is_told_once else '',
         goes_on='' if main.of.is_told_once else 'the end of the recording',
-        back=back, times=times, hosts=main.of.silent.hosts if main.of.silent is not None else [],
-        silent=len(main.of.silent.components) if main.of.silent is not None else 0)
+        back=back, times=times, hosts=[] if main.of.silent is None else main.of.silent.hosts,
+        silent=0 if main.of.silent is None else len(main.of.silent.components))
     if main.before_end is not None:
         text = f'{text}, {main.before_end:.1f} s before the recording ended'
     return _as_sentence(text)
@@ -60,9 +60,8 @@ def of_another(suspect: NamedSuspect) -> str:
     back = '' if silence.back is None else f', and came back at {clock(silence.back)}'
     return _as_sentence(sentence(
         kind=suspect.of.reason.kind, components=[suspect.component],
-        topic=suspect.what, wrong=suspect.short, reason='', is_silence=True,
-        begin=clock(silence.begin) if silence.begin > 0 else '', end='', goes_on='', back=back,
-        times=1, hosts=[], silent=0))
+        topic=suspect.what, wrong=suspect.short, is_silence=True,
+        begin=clock(silence.begin) if silence.begin > 0 else '', back=back))
 
 
 def _as_sentence(text: str) -> str:

@@ -15,36 +15,25 @@ from self_awareness.stamps import nanoseconds
 
 _OF_AN_ALARM = re.compile(r'alarm_\d{4}-\d\d-\d\d-')  # RecorderFolder::pathOf()
 
-MOST_DETAILS = 40
-"""Incidents with details, at most so many; the worst come first."""
+MOST_DETAILS = 40  # incidents with details, at most so many; the worst come first
 
 
 @dataclass(frozen=True)
 class Incident:
-    """All that one cause has done.
+    """All that one cause has done."""
 
-    Args:
-        key: unique in the page.
-        intervals: alarms and suspicions, in the order of time.
-        main: the longest one, alarms first, that blames the cause.
-        together: components that failed at once with the cause, and do not depend on it.
-        victims: components that are named, and need the messages of these, as far as the graph
-            tells; empty: there is no graph.
-        others: further components that are named.
-        headline: in words.
-        further: the same of each of the others that fell silent.
-        waiting: who waits for the cause, who for them, and so on; empty: not known.
-    """
-
-    key: str
-    intervals: List[Interval]
-    main: Interval
-    together: List[str]
+    key: str  # unique in the page
+    intervals: List[Interval]  # alarms and suspicions, in the order of time
+    main: Interval  # the longest one, alarms first, that blames the cause
+    together: List[str]  # components that failed at once with the cause, and do not depend on it
+    # Components that are named, and need the messages of these, as far as the graph tells; empty:
+    # there is no graph.
     victims: List[str]
-    others: List[str]
-    headline: str
+    others: List[str]  # further components that are named
+    headline: str  # in words
+    # The same of each of the others that fell silent.
     further: List[str] = field(default_factory=list)
-    waiting: str = ''
+    waiting: str = ''  # who waits for the cause, who for them, and so on; empty: not known
 
     @property
     def level(self) -> str:

@@ -13,11 +13,8 @@ from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.text import of_limit
 from self_awareness.stamps import SECOND_NS, moment
 
-ALARM, SUSPICION = 'alarm', 'suspicion'
-"""The levels of an interval."""
-
-MOST_LISTED = 400
-"""Alarms and suspicions that are listed, at most so many; alarms come first."""
+ALARM, SUSPICION = 'alarm', 'suspicion'  # the levels of an interval
+MOST_LISTED = 400  # alarms and suspicions that are listed, at most so many; alarms come first
 
 _CLEARLY_LONGER = 3
 """A pause is a silence if it is so many times as long as the longest one in training."""
@@ -27,36 +24,22 @@ _SILENCES = ('silent', 'topic silent', 'unanswered')
 
 @dataclass(frozen=True)
 class Silence:
-    """Times in seconds from the recording's first message.
+    """Times in seconds from the recording's first message."""
 
-    Args:
-        begin: its last message, or the recording's first one.
-        back: its next message; None: there is none until the recording's end.
-    """
-
-    begin: float
-    back: Optional[float]
+    begin: float  # its last message, or the recording's first one
+    back: Optional[float]  # its next message; None: there is none until the recording's end
 
 
 @dataclass(frozen=True)
 class NamedSuspect:
-    """A suspect in words.
+    """A suspect in words."""
 
-    Args:
-        component: whose event type it is: a node, or a topic where nodes are not known.
-        event_type: its name.
-        short: what it does wrong, in a few words.
-        named: when it was named [s] from the recording's first message.
-        silence: its longest one meanwhile; None: it was not silent.
-        of: the suspect itself.
-    """
-
-    component: str
-    event_type: str
-    short: str
-    named: float
-    silence: Optional[Silence]
-    of: Suspect
+    component: str  # whose event type it is: a node, or a topic where nodes are not known
+    event_type: str  # its name
+    short: str  # what it does wrong, in a few words
+    named: float  # when it was named [s] from the recording's first message
+    silence: Optional[Silence]  # its longest one meanwhile; None: it was not silent
+    of: Suspect  # the suspect itself
 
     @property
     def what(self) -> str:
@@ -66,37 +49,24 @@ class NamedSuspect:
 
 @dataclass(frozen=True)
 class Interval:
-    """An alarm or a suspicion; times in seconds from the recording's first message.
+    """An alarm or a suspicion; times in seconds from the recording's first message."""
 
-    Args:
-        of: the alarm or suspicion itself.
-        level: ALARM or SUSPICION.
-        start: of it.
-        end: of it, or of the recording.
-        moment: date and time of the start, with the time zone.
-        cleared: False: it stood until the recording's end.
-        began: when the trouble began, as far as the first suspect tells; None: it does not.
-        reached: how far the score went, in words.
-        evidence: channels that speak, in words.
-        silence: of all, or of all on some computers, where nobody was heard; None: somebody was.
-        suspects: best first.
-        later: suspects that were named later.
-        before_end: by how many seconds all who stopped did so before the recording ended; None:
-            nobody did, or some time before.
-    """
-
-    of: Alarm
-    level: str
-    start: float
-    end: float
-    moment: str
-    cleared: bool
+    of: Alarm  # the alarm or suspicion itself
+    level: str  # ALARM or SUSPICION
+    start: float  # of it
+    end: float  # of it, or of the recording
+    moment: str  # date and time of the start, with the time zone
+    cleared: bool  # false: it stood until the recording's end
+    # When the trouble began, as far as the first suspect tells; None: it does not.
     began: Optional[float]
-    reached: str
-    evidence: str
+    reached: str  # how far the score went, in words
+    evidence: str  # channels that speak, in words
+    # Of all, or of all on some computers, where nobody was heard; None: somebody was.
     silence: Optional[Silence]
-    suspects: List[NamedSuspect]
-    later: List[NamedSuspect]
+    suspects: List[NamedSuspect]  # best first
+    later: List[NamedSuspect]  # suspects that were named later
+    # By how many seconds all who stopped did so before the recording ended; None: nobody did, or
+    # some time before.
     before_end: Optional[float] = None
 
     @property

@@ -15,23 +15,14 @@ from self_awareness.stamps import SECOND_NS
 
 @dataclass(frozen=True)
 class JudgedBy:
-    """What judged the recordings.
+    """What judged the recordings."""
 
-    Args:
-        trained: the model.
-        model_name: of its file.
-        parameters: of the detector.
-        threshold: of the score; None: not calibrated.
-        evidence: of the evidence detector; None: the paper's judged.
-        not_watched: who is not watched, in words; empty: everybody is, or it is not known.
-    """
-
-    trained: TrainedModel
-    model_name: str
-    parameters: DetectorParameters
-    threshold: Optional[float]
-    evidence: Optional[EvidenceModel]
-    not_watched: str = ''
+    trained: TrainedModel  # the model
+    model_name: str  # of its file
+    parameters: DetectorParameters  # of the detector
+    threshold: Optional[float]  # of the score; None: not calibrated
+    evidence: Optional[EvidenceModel]  # of the evidence detector; None: the paper's judged
+    not_watched: str = ''  # who is not watched, in words; empty: everybody is, or it is not known
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,8 @@ from typing import Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
 from self_awareness.reporting.text import first_lines
 
-MOST_NODES = 14
-"""Nodes that are drawn, at most so many: what a phone can show."""
-MOST_TOPICS = 2
-"""Topics that are named at a connection, at most so many."""
+MOST_NODES = 14  # nodes that are drawn, at most so many: what a phone can show
+MOST_TOPICS = 2  # topics that are named at a connection, at most so many
 
 ROOT, VICTIM, OTHER = 'root', 'victim', 'other'
 """What a node is: the first suspect, another suspect, or a neighbour of them."""
@@ -22,25 +20,17 @@ _LOG_TOPICS = ('/rosout', '/rosout_agg')
 _LONGEST_LINE = 16
 _TIMEOUT_S = 20
 
-Edge = Tuple[str, str, str]
-"""Publisher, topic, subscriber."""
+Edge = Tuple[str, str, str]  # publisher, topic, subscriber
 
 
 @dataclass(frozen=True)
 class Neighbourhood:
-    """What is drawn of a graph.
+    """What is drawn of a graph."""
 
-    Args:
-        roles: of the nodes, by name, the most important first.
-        topics: by publisher and subscriber.
-        left_out: number of nodes that are farther away.
-        listeners: nodes that hear nearly everybody, and are left out.
-    """
-
-    roles: Dict[str, str]
-    topics: Dict[Tuple[str, str], List[str]]
-    left_out: int
-    listeners: List[str]
+    roles: Dict[str, str]  # of the nodes, by name, the most important first
+    topics: Dict[Tuple[str, str], List[str]]  # by publisher and subscriber
+    left_out: int  # number of nodes that are farther away
+    listeners: List[str]  # nodes that hear nearly everybody, and are left out
 
 
 def neighbourhood(edges: Iterable[Edge], suspects: Sequence[str]) -> Neighbourhood:

@@ -13,8 +13,7 @@ from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.templates import template
 from self_awareness.stamps import nanoseconds
 
-MOST_LINES = 12
-"""Lines of the log of a node, at most so many."""
+MOST_LINES = 12  # lines of the log of a node, at most so many
 
 _BEFORE_S, _AFTER_S = 5.0, 5.0
 _LONGEST_S = 60.0
@@ -24,18 +23,13 @@ _LEVELS = {1: 'DEBUG', 2: 'INFO', 4: 'WARN', 8: 'ERROR', 16: 'FATAL'}
 
 @dataclass(frozen=True)
 class NextSteps:
-    """What to look at.
+    """What to look at."""
 
-    Args:
-        log: the last lines of who is to blame on /rosout, up to shortly after the alarm: time [s]
-            from the recording's first message, level and text.
-        play: command that plays the recording at that time; None: it is no bag.
-        layout: a layout for PlotJuggler, whose tab names that time; None likewise.
-    """
-
+    # The last lines of who is to blame on /rosout, up to shortly after the alarm: time [s] from
+    # the recording's first message, level and text.
     log: List[Tuple[float, str, str]]
-    play: Optional[str]
-    layout: Optional[str]
+    play: Optional[str]  # command that plays the recording at that time; None: it is no bag
+    layout: Optional[str]  # a layout for PlotJuggler, whose tab names that time; None likewise
 
 
 def next_steps(judged: Judged, found: Sequence[Incident]) -> List[NextSteps]:

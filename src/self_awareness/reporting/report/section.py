@@ -28,69 +28,43 @@ QUIET, SUSPICIOUS, ALARMED, NOT_JUDGED = 'quiet', 'suspicious', 'alarmed', 'not 
 
 @dataclass(frozen=True)
 class Summary:
-    """The recording in words.
+    """The recording in words."""
 
-    Args:
-        state: QUIET, SUSPICIOUS, ALARMED or NOT_JUDGED.
-        headline: who did what when; or that nothing happened.
-        answers: question (when, who, why, ...) and answer.
-        first: key of the incident that it is about; None: there is none.
-    """
-
-    state: str
-    headline: str
-    answers: List[Tuple[str, str]]
-    first: Optional[str]
+    state: str  # QUIET, SUSPICIOUS, ALARMED or NOT_JUDGED
+    headline: str  # who did what when; or that nothing happened
+    answers: List[Tuple[str, str]]  # question (when, who, why, ...) and answer
+    first: Optional[str]  # key of the incident that it is about; None: there is none
 
 
 @dataclass(frozen=True)
 class Details:
-    """What is shown of an incident when it is opened.
+    """What is shown of an incident when it is opened."""
 
-    Args:
-        decided: which track was strongest when the main interval was raised, in words; empty: not
-            known.
-        evidence: against each suspect that the main interval names; None: it cannot be drawn.
-        graph: who publishes to whom near the cause; without roles: not known.
-        next: what to look at.
-    """
-
+    # Which track was strongest when the main interval was raised, in words; empty: not known.
     decided: str
+    # Against each suspect that the main interval names; None: it cannot be drawn.
     evidence: List[Optional[Evidence]]
-    graph: Neighbourhood
-    next: NextSteps
+    graph: Neighbourhood  # who publishes to whom near the cause; without roles: not known
+    next: NextSteps  # what to look at
 
 
 @dataclass(frozen=True)
 class Section:
-    """All that the report says of one recording.
+    """All that the report says of one recording."""
 
-    Args:
-        key: unique in the page.
-        title: the recording.
-        facts: name and value: how long it is and what judged it.
-        summary: in words.
-        timeline: the score and the evidence over time.
-        incidents: what happened, the worst first.
-        details: of the first MOST_DETAILS incidents, by their keys.
-        not_listed: number of further alarms and suspicions.
-        unjudged: what was not judged.
-        watched: how soon the death of each component is found: a table, its head first; empty: not
-            known of this detector.
-        unheard: what nobody subscribed to in training.
-    """
-
-    key: str
-    title: str
-    facts: List[Tuple[str, str]]
-    summary: Summary
-    timeline: Timeline
-    incidents: List[Incident]
-    details: Dict[str, Details]
-    not_listed: int
-    unjudged: List[Unjudged]
+    key: str  # unique in the page
+    title: str  # the recording
+    facts: List[Tuple[str, str]]  # name and value: how long it is and what judged it
+    summary: Summary  # in words
+    timeline: Timeline  # the score and the evidence over time
+    incidents: List[Incident]  # what happened, the worst first
+    details: Dict[str, Details]  # of the first MOST_DETAILS incidents, by their keys
+    not_listed: int  # number of further alarms and suspicions
+    unjudged: List[Unjudged]  # what was not judged
+    # How soon the death of each component is found: a table, its head first; empty: not known of
+    # this detector.
     watched: List[Tuple[str, ...]]
-    unheard: List[str]
+    unheard: List[str]  # what nobody subscribed to in training
 
 
 def section(judged: Judged, key: str) -> Section:

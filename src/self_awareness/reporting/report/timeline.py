@@ -13,12 +13,9 @@ from self_awareness import EvidenceLanes
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import SECOND_NS
 
-MOST_LANES = 40
-"""Components that have a lane of their own, at most so many."""
-MOST_LONG = 1000
-"""Stretches of the whole recording, at most about so many."""
-MOST_FINE = 1500
-"""Windows that are stretches of their own, at most so many."""
+MOST_LANES = 40  # components that have a lane of their own, at most so many
+MOST_LONG = 1000  # stretches of the whole recording, at most about so many
+MOST_FINE = 1500  # windows that are stretches of their own, at most so many
 SHOWN_LIMITS = 4.0
 """Scores beyond so many limits are drawn at the edge; those within the limits are not drawn."""
 
@@ -28,46 +25,31 @@ _AFTER = 15 * SECOND_NS
 
 @dataclass(frozen=True)
 class Lanes:
-    """The evidence of components over the stretches of a timeline.
+    """The evidence of components over the stretches of a timeline."""
 
-    Args:
-        names: of the components, from top to bottom.
-        shares: the largest share of its limit, float [lanes, stretches]; 1 is the limit.
-        left_out: number of components with evidence that have no lane.
-        largest_left_out: the largest share of these.
-        of: the evidence by stretch of all components, and which track was strongest when.
-    """
-
-    names: List[str]
-    shares: np.ndarray
-    left_out: int
-    largest_left_out: float
+    names: List[str]  # of the components, from top to bottom
+    shares: np.ndarray  # the largest share of its limit, float [lanes, stretches]; 1 is the limit
+    left_out: int  # number of components with evidence that have no lane
+    largest_left_out: float  # the largest share of these
+    # The evidence by stretch of all components, and which track was strongest when.
     of: EvidenceLanes
 
 
 @dataclass(frozen=True)
 class Timeline:
-    """The score by stretch of time.
+    """The score by stretch of time."""
 
-    Args:
-        edges: of the stretches [s] from the recording's first message; one more than stretches.
-        lowest: score of each stretch, in units of the threshold's size; NaN: none.
-        highest: likewise.
-        abnormal: whether a window of it is.
-        unit: the threshold's size; 1: not calibrated.
-        limit: the threshold in this unit: -1 of evidence, 1 of the paper's; None: not calibrated.
-        settling: start and end [s] of the times in which no alarm is raised.
-        lanes: the evidence of components; None: there is none, or nobody wants it.
-    """
-
+    # Of the stretches [s] from the recording's first message; one more than stretches.
     edges: np.ndarray
-    lowest: np.ndarray
-    highest: np.ndarray
-    abnormal: np.ndarray
-    unit: float
+    lowest: np.ndarray  # score of each stretch, in units of the threshold's size; NaN: none
+    highest: np.ndarray  # likewise
+    abnormal: np.ndarray  # whether a window of it is
+    unit: float  # the threshold's size; 1: not calibrated
+    # The threshold in this unit: -1 of evidence, 1 of the paper's; None: not calibrated.
     limit: Optional[float]
+    # Start and end [s] of the times in which no alarm is raised.
     settling: List[Tuple[float, float]]
-    lanes: Optional[Lanes]
+    lanes: Optional[Lanes]  # the evidence of components; None: there is none, or nobody wants it
 
 
 def cut(judged: Judged) -> np.ndarray:

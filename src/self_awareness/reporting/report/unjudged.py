@@ -11,25 +11,17 @@ from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.text import number_of
 from self_awareness.stamps import SECOND_NS
 
-MOST_NAMES = 30
-"""Names that are listed of one kind, at most so many."""
+MOST_NAMES = 30  # names that are listed of one kind, at most so many
 
 
 @dataclass(frozen=True)
 class Unjudged:
-    """Something that was not judged.
+    """Something that was not judged."""
 
-    Args:
-        what: it is.
-        why: it was not judged.
-        names: of event types, at most MOST_NAMES; empty: it is none of them.
-        more: number of further ones.
-    """
-
-    what: str
-    why: str
-    names: List[str]
-    more: int = 0
+    what: str  # it is
+    why: str  # it was not judged
+    names: List[str]  # of event types, at most MOST_NAMES; empty: it is none of them
+    more: int = 0  # number of further ones
 
 
 def unjudged(judged: Judged) -> List[Unjudged]:
