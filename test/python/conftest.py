@@ -101,12 +101,27 @@ def wait_until(condition: Callable[[], object], what: str, deadline_s: float = 6
         time.sleep(0.005)
 
 
-def error_of(program: Any, arguments: Sequence[str], capsys: pytest.CaptureFixture[str]) -> str:
-    """Run a program (its module) that must fail, and return the one line that it says."""
+def run(program: Any, arguments: Sequence[str], code: int = 0) -> Tuple[str, str]:
+    """Run a program (its module) in this process; return its output, and its errors.
+
+    Args:
+        code: that it must exit with.
+    """
+    with contextlib.redirect_stdout(io.StringIO()) as out, \
+            contextlib.redirect_stderr(io.StringIO()) as err:
+        assert program.main(arguments) == code, err.getvalue()
+    return out.getvalue(), err.getvalue()
+
+
+def printed_by(program: Any, arguments: Sequence[str]) -> str:
+    """Run a program that must succeed, and return what it prints."""
+    return run(program, arguments)[0]
+
+
+def error_of(program: Any, arguments: Sequence[str]) -> str:
+    """Run a program that must fail, and return the one line that it says."""
     name = program.__name__.rpartition('.')[2]
-    capsys.readouterr()
-    assert program.main(arguments) == 1
-    error = capsys.readouterr().err
+    error = run(program, arguments, 1)[1]
     line, = (line for line in error.splitlines() if not line.startswith(f'{name}: warning: '))
     assert line.startswith(f'{name}: error: '), error
     return line

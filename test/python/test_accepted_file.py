@@ -1,12 +1,16 @@
 """What is accepted beside a model, and what a training makes of it."""
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Dict, List, Tuple
 
 import pytest
+from conftest import error_of, printed_by, trained
 
-from self_awareness import Acceptance, BagError, EventType, accepted_file
+from self_awareness import (Acceptance, BagError, EventType, TrainedModel, accepted_file,
+                            read_accepted)
+from self_awareness.commands import calibrate, train
 
 
 def model(driver: int, replayed: int, base: int = 0) -> Any:
@@ -105,3 +109,51 @@ def test_a_mode_is_learned_once_all_of_it_were_heard_after_it() -> None:
     other = Acceptance(kind='new mode', at=90, by='/rqt', together=['/driver', '/laser'])
     assert accepted_file.learned([other], model(100, 0, 100)) == ([], [other])
     assert entry != other
+
+
+Bags = Tuple[str, str]
+OF_SOURCE = Acceptance('/joystick', '/joy', 'stranger', 10, '/rqt')
+OF_OUTPUT = Acceptance('/camera', '/image', 'slow', 20, '/top')
+
+
+@pytest.fixture(name='source')
+def _source(long_bags: Bags, tmp_path: Path) -> str:
+    """A trained model, beside which something is accepted."""
+    source = str(tmp_path / 'source')
+    trained([long_bags[0]], tmp_path / 'source')
+    accepted_file.keep([OF_SOURCE], source)
+    return source
+
+
+def heard(model: str) -> Acceptance:
+    """Something that the model has learned, once it is accepted."""
+    known = TrainedModel.load(model)
+    return Acceptance(known.event_types[0].source, '', 'slow',
+                      min(end for _, _, end, _ in known.heard_in))
+
+
+@pytest.mark.parametrize('program, options', [(train, ['--add-to', '{}']),
+                                              (calibrate, ['--model', '{}', '--normal'])])
+def test_what_is_accepted_beside_the_output_is_kept_or_damaged_before_anything_is_written(
+        program: Any, options: List[str], source: str, long_bags: Bags, tmp_path: Path) -> None:
+    output = str(tmp_path / 'output')
+    command = [*(each.format(source) for each in options), long_bags[1], '-o', output]
+    (tmp_path / 'output.accepted').write_text('what is this')
+    assert 'output.accepted' in error_of(program, command)
+    assert not (tmp_path / 'output').exists()
+    (tmp_path / 'output.accepted').unlink()
+    learned, nobody = heard(source), Acceptance('/nobody', at=5)
+    accepted_file.keep([OF_OUTPUT, nobody, learned], output)
+    said = printed_by(program, command)
+    assert read_accepted(output + '.accepted') == [OF_OUTPUT, nobody, OF_SOURCE]
+    assert read_accepted(source + '.accepted') == [OF_SOURCE]
+    assert f'learned now, so it is judged again: {learned.component} (slow)' in said
+    for words in ('/joystick on /joy (stranger)', '/camera on /image (slow)', '/nobody'):
+        assert f'accepted, and not learned: {words}' in said
+
+
+def test_calibrate_in_place_leaves_the_file_alone(source: str, long_bags: Bags) -> None:
+    accepted = [OF_SOURCE, heard(source)]
+    accepted_file.keep(accepted, source)
+    assert calibrate.main(['--model', source, '--normal', long_bags[1], '-o', source]) == 0
+    assert read_accepted(source + '.accepted') == accepted

@@ -2,14 +2,18 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Set, Tuple
 
 import pytest
 import rosbag
 from conftest import put, robot
+from diagnostic_msgs.msg import DiagnosticArray
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import Image
+from std_msgs.msg import String
 
 from self_awareness import EncodingRules, EventLogWriter, read_events, summarise_bag
+from self_awareness.msg import SelfAwareness
 
 _IMAGE_BYTES = 1_000_000
 
@@ -62,3 +66,22 @@ def test_an_event_log_that_was_replaced_is_read_again(make_bag, tmp_path: Path) 
         log.close()
         events = read_events(path, EncodingRules.defaults(), recording=0)
         assert events.stamps[-1] - events.stamps[0] > (length - 1.0) * 1e9
+
+
+def test_nodes_of_this_package_are_left_out_whatever_their_names(tmp_path: Path) -> None:
+    """What they say in a recording is no communication of the robot."""
+    path, encoding = str(tmp_path / 'a.bag'), EncodingRules.defaults()
+    with rosbag.Bag(path, 'w') as bag:
+        for tick in range(600):
+            for source, topic, message in (
+                    ('/watch', '/watch/status', SelfAwareness()), ('/watch', '/rosout', Log()),
+                    ('/base', '/diagnostics', DiagnosticArray()), ('/watch', '/scan', String())):
+                put(bag, source, topic, message, 1000.0 + 0.1 * tick)
+
+    def heard() -> Set[Tuple[str, str]]:
+        return {(kind.source, kind.scope) for kind in read_events(path, encoding).event_types}
+
+    assert heard() == {('/base', '/diagnostics'), ('/watch', '/scan')}
+    # Where all is under the name of a player, nobody can be told from the robot's nodes.
+    encoding.source = 'none'
+    assert heard() == {('', '/diagnostics'), ('', '/rosout'), ('', '/scan')}

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Callable, Iterable, Tuple
+from typing import Any, Callable, Dict, Iterable, Tuple
 
 import pytest
 import rosbag
@@ -25,20 +25,15 @@ def _messages(start: float, length: float) -> Iterable[Tuple[float, str, str]]:
 
 def _record(path: Path, start: float, length: float = 90.0) -> str:
     """Write a recording of two nodes that publish on the same topic."""
-    connections = {}
+    connections: Dict[str, Any] = {}
     with rosbag.Bag(str(path), 'w') as bag:
         for stamp, source, topic in _messages(start, length):
             # rosbag itself has one connection for each topic, however many nodes publish there.
-            known = connections.get((source, topic))
-            if known is None:
-                bag._topic_connections.pop(topic, None)
-            else:
-                bag._topic_connections[topic] = known
+            bag._topic_connections = connections.setdefault(source, {})
             header = {'callerid': source, 'latching': '0', 'md5sum': String._md5sum,
                       'message_definition': String._full_text, 'topic': topic,
                       'type': String._type}  # in the order of `rosbag record`
             bag.write(topic, String('x'), rospy.Time.from_sec(stamp), connection_header=header)
-            connections[source, topic] = bag._topic_connections[topic]
     return str(path)
 
 

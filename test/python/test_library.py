@@ -52,7 +52,7 @@ def test_the_code_of_the_page_does_what_it_says(folder: Path,
     assert runner.failures == 0
 
 
-def test_it_learns_and_judges_as_the_programs_do(folder: Path, tmp_path: Path, capsys) -> None:
+def test_it_learns_and_judges_as_the_programs_do(folder: Path, tmp_path: Path) -> None:
     bags = [str(folder / f'{name}.bag') for name in ('monday', 'tuesday')]
     held_out, crash = str(folder / 'wednesday.bag'), str(folder / 'crash.bag')
     trained, calibrated = str(tmp_path / 'trained'), str(tmp_path / 'calibrated')

@@ -7,6 +7,7 @@ from typing import List, NamedTuple
 
 import numpy as np
 import pytest
+from conftest import error_of, printed_by
 
 import self_awareness
 from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, TrainedModel,
@@ -46,8 +47,7 @@ def _train(model: str, *arguments: str) -> None:
     assert train.main([*arguments, '--detector', 'both', '-o', model]) == 0
 
 
-def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path: Path,
-                                                  capsys) -> None:
+def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path: Path) -> None:
     """Learn the first half of the normal recording, find the threshold by the second half.
 
     Nothing of the recording with the outage is used for either.
@@ -57,7 +57,6 @@ def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path:
     _train(model, normal, '--start', '24', '--end', '65')
     assert calibrate.main(['--model', model, '--normal', f'{normal}@65', *PAPER, '--cutoff',
                            'fpr=0.01', '-o', model]) == 0
-    capsys.readouterr()
     alarms = alarms_in(wheeled_robot / 'feb13_outage.bag', model, *PAPER)
     outage = next(alarm for alarm in alarms if alarm.end > 28.0)
     assert 28.0 < outage.start < 29.0
@@ -100,16 +99,13 @@ def test_evidence_finds_an_outage_and_that_the_laser_is_gone(wheeled_robot: Path
 
 
 @pytest.mark.parametrize('session', ['101', '102', '103'])
-def test_evidence_leaves_a_sparse_robot_alone(shared: Path, tmp_path: Path, session: str,
-                                              capsys) -> None:
+def test_evidence_leaves_a_sparse_robot_alone(shared: Path, tmp_path: Path, session: str) -> None:
     """Learned from two sessions, the third is normal, too."""
     bags = sorted(str(path) for path in (shared / 'data' / 'social_robot').glob('*.bag'))
     judged, = [bag for bag in bags if session in bag]
     model = str(tmp_path / 'm')
     _train(model, *[bag for bag in bags if bag != judged])
-    capsys.readouterr()
-    assert score.main([judged, '--model', model]) == 0
-    out = capsys.readouterr().out
+    out = printed_by(score, [judged, '--model', model])
     assert 'not calibrated' not in out and ' incident' not in out
 
 
@@ -124,15 +120,13 @@ def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_
     assert len(trained.event_types) == 17 and trained.events == 71213
     windows = str(folder / 'facing_windows.bag')
     arguments = ['--model', model, '--normal', windows, *PAPER, '-o', model, '--inject']
-    assert calibrate.main([*arguments, 'crash:/base']) == 1
-    assert 'only starve' in capsys.readouterr().err
+    assert 'only starve' in error_of(calibrate, [*arguments, 'crash:/base'])
     assert calibrate.main([*arguments, 'starve']) == 0
     assert score.main([windows, '--model', model, '--csv', str(tmp_path / 'w.csv')]) == 0
     assert len((tmp_path / 'w.csv').read_text().splitlines()) > 400
 
 
-def test_every_recording_can_be_trained_on_and_scored(shared: Path, tmp_path: Path,
-                                                      capsys) -> None:
+def test_every_recording_can_be_trained_on_and_scored(shared: Path, tmp_path: Path) -> None:
     bags = sorted((shared / 'data').glob('*/*.bag'))
     assert len(bags) >= 14
     for bag in bags:

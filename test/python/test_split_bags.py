@@ -7,7 +7,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import pytest
 import rosbag
-from conftest import Message, error_of, robot, trained, write_bag
+from conftest import Message, error_of, printed_by, robot, trained, write_bag
 
 from self_awareness import BagError, EncodingRules, read_events
 from self_awareness.commands import convert, info, score, train
@@ -112,7 +112,7 @@ def test_a_joined_recording_is_what_it_was_before_the_split(tmp_path: Path, caps
     assert f'{tmp_path}/day/run_0.bag..5: 6 files of one recording' in capsys.readouterr().out
 
 
-def test_parts_are_of_the_recording_or_of_a_file(tmp_path: Path, capsys) -> None:
+def test_parts_are_of_the_recording_or_of_a_file(tmp_path: Path) -> None:
     day = tmp_path / 'day'
     files = split(day, list(robot(1000.0, 40.0)), 10.0)
     part, = look([BagPart.parse(f'{day}@15-25')]).parts
@@ -120,14 +120,16 @@ def test_parts_are_of_the_recording_or_of_a_file(tmp_path: Path, capsys) -> None
     assert look([BagPart.parse(str(part))]).parts == [part]
     found = read_events(part.files, EncodingRules(), [], part.start, part.end)
     assert (found.stamps[0] - found.summary.start) / 1e9 == pytest.approx(15.0, abs=0.05)
+    write_bag(day / 'alone.bag', robot(9000.0, 40.0))
+    assert list(map(str, look([BagPart.parse(f'{day}@5-20')]).parts)) == [
+        f'{day}/alone.bag@5-20', f'{files[0]}..3@5-20']
     alone, = look([BagPart.parse(f'{files[1]}@2-5')]).parts
     assert alone.files == [files[1]]
     up_to, = look([BagPart.parse(f'{files[1]}..2')]).parts
     assert up_to.files == files[1:3]
     with pytest.raises(ValueError, match='no recording from this file to that of number 7'):
         look([BagPart.parse(f'{files[0]}..7')])
-    assert 'name it once' in error_of(train, [str(day), files[1], '-o', str(tmp_path / 'm')],
-                                      capsys)
+    assert 'name it once' in error_of(train, [str(day), files[1], '-o', str(tmp_path / 'm')])
 
 
 def test_convert_and_info_take_them_as_one(tmp_path: Path, capsys) -> None:
@@ -139,20 +141,18 @@ def test_convert_and_info_take_them_as_one(tmp_path: Path, capsys) -> None:
     capsys.readouterr()
     assert info.main([log, '--details']) == 0
     assert '#1 run_0.bag..3: 40.0 s' in capsys.readouterr().out
-    assert info.main(files[::-1]) == 0
-    out = capsys.readouterr().out
+    out = printed_by(info, files[::-1])
     assert '1 recording, 40 s' in out and 'from 20.0 s on: run_2.bag' in out
 
 
-def test_score_says_in_which_file_it_was(tmp_path: Path, evidence_model: str, capsys) -> None:
+def test_score_says_in_which_file_it_was(tmp_path: Path, evidence_model: str) -> None:
     dead = [message for message in robot(5000.0, 60.0)
             if message[1] == '/battery' or message[0] < 5029.7]
     files = split(tmp_path / 'day', dead, 15.0)
     assert len(files) == 4
     page = tmp_path / 'r.html'
-    assert score.main([str(tmp_path / 'day'), '--model', evidence_model, '--report',
-                       str(page)]) == 0
-    out = capsys.readouterr().out
+    out = printed_by(score, [str(tmp_path / 'day'), '--model', evidence_model, '--report',
+                             str(page)])
     assert out.splitlines()[-1] == '1 recording, 60 s: 1 incident', out
     assert '/laser stopped sending at 29.7 s. (14.7 s of run_1.bag)' in out, out
     assert '14.7 s of run_1.bag' in page.read_text(encoding='utf-8')

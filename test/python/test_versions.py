@@ -14,6 +14,7 @@ from typing import Any, Dict, List, Tuple
 import pytest
 import rosbag
 import yaml
+from conftest import printed_by
 
 from self_awareness import METHOD, EncodingRules, FileVersion, ResultBag, TrainedModel
 from self_awareness.commands import calibrate, info, merge, score, train
@@ -46,9 +47,8 @@ def by_track(limits: List[Dict[str, Any]]) -> Dict[Key, List[float]]:
     return {key: sorted(values) for key, values in found.items()}
 
 
-def printed(capsys: pytest.CaptureFixture, path: Path, *options: str) -> str:
-    assert info.main([str(path), *options]) == 0
-    return capsys.readouterr().out
+def printed(path: Path, *options: str) -> str:
+    return printed_by(info, [str(path), *options])
 
 
 def test_what_is_written_now_has_its_files(tmp_path: Path) -> None:
@@ -96,7 +96,7 @@ def test_info_prints_the_versions(folder: Path, capsys) -> None:
 
 
 @every_release
-def test_programs_go_on_with_files_of_any_release(folder: Path, tmp_path: Path, capsys) -> None:
+def test_programs_go_on_with_files_of_any_release(folder: Path, tmp_path: Path) -> None:
     model, results = str(tmp_path / 'm'), str(tmp_path / 'results.bag')
     normal, dead = (str(folder / name) for name in RECORDINGS[:2])
     assert calibrate.main(['--model', str(folder / 'robot.model'), '--normal', normal,
@@ -104,8 +104,7 @@ def test_programs_go_on_with_files_of_any_release(folder: Path, tmp_path: Path, 
     before, after = TrainedModel.load(str(folder / 'robot.model')), TrainedModel.load(model)
     assert after.version.format == FORMATS['robot.model'], 'what is written is of this version'
     assert after.version.method == before.version.method, 'but its counts are not'
-    assert score.main([dead, '--model', model, '--result-bag', results]) == 0
-    assert '1. /laser' in capsys.readouterr().out
+    assert '1. /laser' in printed_by(score, [dead, '--model', model, '--result-bag', results])
     assert FileVersion.of_result_bag(results).format == FORMATS['results.bag']
     assert train.main([normal, '--add-to', model, '-o', model]) == 0
     other = str(tmp_path / 'other')

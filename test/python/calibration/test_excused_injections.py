@@ -1,17 +1,20 @@
-"""No fault is injected where an excuse held; and recordings are judged as `score` judges them."""
+"""Where an excuse held, or the machine stood still, no fault is injected and no limit is found."""
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any, Tuple
+from pathlib import Path
+from typing import Any, List, Sequence, Tuple
 
 import pytest
-from conftest import jittery_robot, write_bag
+from conftest import Message, jittery_robot, write_bag
 
 from self_awareness import DetectorParameters, TrainedModel, Waiting, recordings
+from self_awareness.calibration import limits
 from self_awareness.calibration.fault_injection import InjectedFault
 from self_awareness.calibration.runs import JudgedRun, Run, injections, judge_runs
 from self_awareness.judging import evidence_judge
-from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.parts import BagPart
+from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
 CRASHES = [InjectedFault.parse('crash:*')]
@@ -42,12 +45,6 @@ def judged(model: TrainedModel, recording: RecordingEvents) -> Tuple[Any, Judged
     return judge, judge_runs(judge, model.window, [Run(recording)])[0]
 
 
-def test_a_recording_is_judged_with_what_its_machine_measured(model: TrainedModel,
-                                                              recording: RecordingEvents) -> None:
-    _, run = judged(model, starved(recording, 50, 80))
-    assert [alarm.busy is not None for alarm in run.verdicts.suspicions] == [True]
-
-
 @pytest.mark.parametrize('begin_s, end_s, part', [(50, 80, (0, 50)), (20, 50, (50, 120))])
 def test_faults_are_injected_before_or_after_the_excuse(
         model: TrainedModel, recording: RecordingEvents, begin_s: int, end_s: int,
@@ -72,3 +69,45 @@ def test_without_an_excuse_the_whole_recording_is_used(model: TrainedModel,
                                                        recording: RecordingEvents) -> None:
     _, run = judged(model, recording)
     assert injections(CRASHES, model, [run]).runs[0].source is recording
+
+
+LENGTH_S = 120.0
+FROM_S, UNTIL_S = 60.0, 61.5
+
+
+def normal(begin: float) -> List[Message]:
+    return list(jittery_robot(begin, LENGTH_S, int(begin)))
+
+
+def stood_still(begin: float) -> List[Message]:
+    """All that was to happen meanwhile happens at once, right afterwards."""
+    def moved(stamp: float) -> float:
+        after = stamp - begin - FROM_S
+        return begin + UNTIL_S + after * 1e-3 if 0 <= after < UNTIL_S - FROM_S else stamp
+
+    return sorted((moved(stamp), topic, text) for stamp, topic, text in normal(begin))
+
+
+def measured(recording: Any) -> List[Waiting]:
+    """What the recorder measured. It looked last a little before, and then only after some
+    messages had come."""
+    begin = recording.origin + int((FROM_S - 0.01) * SECOND_NS)
+    end = recording.origin + int((UNTIL_S + 0.01) * SECOND_NS)
+    return [Waiting(recording.origin, begin, 0), Waiting(begin, end, end - begin - 1)]
+
+
+def test_it_is_no_silence_that_a_limit_must_allow(evidence_model: str, tmp_path: Path) -> None:
+    """Of two starts, none is outvoted (docs/method.md, section 5.2)."""
+    trained = TrainedModel.load(evidence_model)
+
+    def found_after(recording: Any, waiting: Sequence[Waiting]) -> List[float]:
+        trained.calibration, = limits.find(
+            trained, DetectorParameters().settle_time, [limits.BUDGET],
+            [replace(recording, waiting=waiting)])
+        return [each.death_found_after for each in trained.coverage()]
+
+    usual, stood = (recordings.read(trained, BagPart(write_bag(tmp_path / name, messages)))
+                    for name, messages in (('usual.bag', normal(5000.0)),
+                                           ('stood.bag', stood_still(5000.0))))
+    assert min(found_after(stood, [])) > UNTIL_S - FROM_S
+    assert found_after(stood, measured(stood)) == pytest.approx(found_after(usual, []), rel=0.25)

@@ -1,8 +1,8 @@
-"""Silences that one recording alone shows: found, named, and left out if that is asked."""
+"""What a recording holds before a component's first message, after its last, and its holes."""
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import List, Tuple, cast
+from typing import Dict, List, Optional, Tuple, cast
 
 import numpy as np
 import pytest
@@ -16,18 +16,35 @@ from self_awareness.stamps import SECOND_NS
 
 GPS, SCAN = EventType('/gps', '/fix', 'T'), EventType('/laser', '/scan', 'T')
 ORIGIN = 1_600_000_000 * SECOND_NS
+TICKS = np.arange(0.0, 100.0, 0.2)
 
 
-def recorded(name: str, *silent: Tuple[float, float], seconds: float = 100.0) -> RecordingEvents:
-    """Return a recording of two timers at 5 Hz, of which /gps is silent now and then."""
-    ticks = np.arange(0.0, seconds, 0.2)
-    gps = ticks[~np.any([(ticks >= begin) & (ticks < end) for begin, end in silent], axis=0)] \
-        if silent else ticks
-    stamps = np.concatenate([gps, ticks + 0.01])
+def of_times(part: BagPart, times: Dict[EventType, np.ndarray]) -> RecordingEvents:
+    """Return a recording of 100 s in which each type comes at these times [s]."""
+    stamps = np.concatenate(list(times.values()))
     order = np.argsort(stamps, kind='stable')
-    ids = np.repeat(np.array([0, 1], dtype=np.uint32), [len(gps), len(ticks)])[order]
-    return RecordingEvents([GPS, SCAN], ORIGIN + (stamps[order] * SECOND_NS).astype(np.int64), ids,
-                           ORIGIN + int(seconds * SECOND_NS), 1, part=BagPart(name), origin=ORIGIN)
+    ids = np.repeat(np.arange(len(times), dtype=np.uint32), list(map(len, times.values())))[order]
+    return RecordingEvents(list(times), ORIGIN + (stamps[order] * SECOND_NS).astype(np.int64), ids,
+                           ORIGIN + 100 * SECOND_NS, 1, part=part, origin=ORIGIN)
+
+
+def recorded(name: str, *silent: Tuple[float, float]) -> RecordingEvents:
+    """Return a recording of two timers at 5 Hz, of which /gps is silent now and then."""
+    gps = TICKS
+    for begin, end in silent:
+        gps = gps[(gps < begin) | (gps >= end)]
+    return of_times(BagPart(name), {GPS: gps, SCAN: TICKS + 0.01})
+
+
+def heard(name: str, start: Optional[float] = None,
+          **nodes: Tuple[float, float]) -> RecordingEvents:
+    """Return a recording of timers at 5 Hz, each heard from one time to another."""
+    times = {EventType('/always', '/always/t', 'T'): TICKS}
+    for number, (node, (begin, end)) in enumerate(nodes.items(), 1):
+        of_node = TICKS + 0.001 * number
+        times[EventType(f'/{node}', f'/{node}/t', 'T')] = of_node[(of_node >= begin)
+                                                                  & (of_node < end)]
+    return of_times(BagPart(name, start), times)
 
 
 def found(*recordings: RecordingEvents) -> List[holes.Hole]:
@@ -102,3 +119,33 @@ def test_a_line_names_who_when_where_and_the_effect() -> None:
     line, = holes.lines([hole], [agreed], True, 'mend it')
     assert line.endswith('; its death is found after 0.6 s all the same, as most starts agree')
     assert holes.lines([hole], [agreed], False, 'mend it') == []
+
+
+@pytest.mark.parametrize('nodes, begin', [
+    ({'laser': (14.5, 100.0), 'gps': (7.0, 100.0)}, 14.6),
+    ({'laser': (3.0, 100.0)}, None),
+    # These do not come with the others.
+    ({'laser': (14.5, 100.0), 'camera': (40.0, 100.0), 'joystick': (20.0, 22.0)}, 14.6)])
+def test_the_start_lasts_until_all_have_come_that_come_all_the_time(
+        nodes: Dict[str, Tuple[float, float]], begin: Optional[float]) -> None:
+    left = heads_and_tails.without_start_up(heard('a', None, **nodes))
+    assert left.part.start == begin and len(left.ids) == len(left.stamps)
+    assert (left.stamps[0] - ORIGIN) / SECOND_NS == pytest.approx(begin or 0.0, abs=0.002)
+
+
+def test_a_begin_that_is_named_stays() -> None:
+    for start in (0.0, 3.0):
+        whole = heard('a', start, laser=(14.5, 100.0))
+        assert heads_and_tails.without_start_up(whole) is whole
+
+
+def test_who_starts_after_recordings_or_ends_before_them_is_told() -> None:
+    parts = [heard('a', 0.0, move=(0.0, 94.0)), heard('b', 0.0, move=(20.0, 100.0)),
+             heard('c', 0.0, move=(0.0, 91.0)), heard('d', 0.0)]
+    lines = heads_and_tails.lines([(each.part, heads_and_tails.silences(each)) for each in parts],
+                                  '--start', '--end')
+    assert lines == [
+        '/move starts after the recording does in 1 of 3: b@0 by 20.0 s. That counts as no pause '
+        '(--start leaves it out)',
+        '/move ends before the recording does in 2 of 3: a@0 by 6.0 s, c@0 by 9.0 s. That counts '
+        'as no pause (--end leaves it out)']

@@ -9,7 +9,7 @@ from typing import Callable, Dict, List
 
 import pytest
 import rosbag
-from conftest import robot, write_bag
+from conftest import printed_by, robot, write_bag
 
 from self_awareness import TrainedModel, recordings_in_event_log
 from self_awareness.commands import calibrate, convert, diff, info, learn_more, score, train
@@ -64,33 +64,28 @@ def arguments(program: str, named: str, model: str, output: str) -> List[str]:
 
 
 @pytest.mark.parametrize('program', sorted(PROGRAMS))
-def test_all_bad_ones_are_named_at_once(program: str, day: Path, evidence_model: str,
-                                        tmp_path: Path, capsys) -> None:
+def test_all_bad_ones_are_named_at_once_and_are_skipped_if_asked(
+        program: str, day: Path, evidence_model: str, tmp_path: Path, capfd) -> None:
     output = tmp_path / 'out'
-    assert PROGRAMS[program](arguments(program, str(day), evidence_model, str(output))) == 1
-    captured = capsys.readouterr()
-    lines = captured.err.splitlines()
-    assert len(lines) == len(BAD), captured.err
-    for name, told in BAD.items():
-        assert len([line for line in lines if line.startswith(f'{program}: error: {day}/{name}: ')
-                    and told in line]) == 1, captured.err
+    named = arguments(program, str(day), evidence_model, str(output))
+
+    def check(kind: str) -> str:
+        captured = capfd.readouterr()
+        assert captured.err.count(f'{program}: {kind}: ') == len(BAD), captured.err
+        for name, told in BAD.items():
+            assert len([line for line in captured.err.splitlines()
+                        if line.startswith(f'{program}: {kind}: {day}/{name}: ')
+                        and told in line]) == 1, captured.err
+        return captured.out
+
+    assert PROGRAMS[program](named) == 1
+    said = check('error')
     # What says something of each recording by itself goes on; what needs all of them does nothing.
     assert output.exists() == (program == 'score')
     if program in ('score', 'info'):
-        assert f'{day}/a.bag: ' in captured.out and f'{day}/zz.bag: ' in captured.out
-
-
-@pytest.mark.parametrize('program', sorted(PROGRAMS))
-def test_they_are_skipped_and_named_again(program: str, day: Path, evidence_model: str,
-                                          tmp_path: Path, capfd) -> None:
-    output = tmp_path / 'out'
-    assert PROGRAMS[program]([*arguments(program, str(day), evidence_model, str(output)),
-                              '--skip-bad']) == 0, capfd.readouterr().err
-    error = capfd.readouterr().err
-    for name, told in BAD.items():
-        assert len([line for line in error.splitlines()
-                    if line.startswith(f'{program}: warning: skipped: {day}/{name}: ')
-                    and told in line]) == 1, error
+        assert f'{day}/a.bag: ' in said and f'{day}/zz.bag: ' in said
+    assert PROGRAMS[program]([*named, '--skip-bad']) == 0
+    check('warning: skipped')
     if program == 'train':
         assert [each.bag for each in TrainedModel.load(str(output)).recordings] == [
             'a.bag', 'old.bag', 'zz.bag']
@@ -135,9 +130,6 @@ def test_where_none_is_left_nothing_is_done(day: Path, model_file: str, tmp_path
         assert not output.exists()
 
 
-def test_a_recorder_that_was_killed_is_read_once_it_is_mended(day: Path, tmp_path: Path,
-                                                              capsys) -> None:
+def test_a_recorder_that_was_killed_is_read_once_it_is_mended(day: Path, tmp_path: Path) -> None:
     shutil.copy(day / 'a.bag', tmp_path / 'a.bag.active')  # rosbag reindex leaves the name
-    capsys.readouterr()
-    assert info.main([str(tmp_path)]) == 0
-    assert f'{tmp_path}/a.bag.active: 100.0 s' in capsys.readouterr().out
+    assert f'{tmp_path}/a.bag.active: 100.0 s' in printed_by(info, [str(tmp_path)])

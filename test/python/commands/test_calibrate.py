@@ -14,7 +14,6 @@ from self_awareness import Roc, TrainedModel
 from self_awareness.calibration import confidence
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import calibrate
-from self_awareness.parts import BagPart
 
 Bags = Tuple[str, str]
 
@@ -89,16 +88,9 @@ def test_a_level_needs_no_faults(run, tmp_path) -> None:
     assert code == 0 and 'AUC' not in out and calibration.method == 'fpr=0.02'
     assert math.isnan(calibration.auc) and math.isnan(calibration.true_positive_rate)
     assert 0.0 < calibration.false_positive_rate <= 0.02
-
-
-def test_little_normal_data_is_called_little(run) -> None:
-    _, out, _ = run('--cutoff', 'fpr=0.0001')
+    out = run('--cutoff', 'fpr=0.0001')[1]
     assert 'too little to say' in out and 'less than one of these windows' in out
-
-
-def test_alarms_on_normal_recordings_are_false(run, tmp_path) -> None:
-    _, out, _ = run('--cutoff', 'fpr=0.9')
-    assert re.search(r'false alarms after persistence: [1-9]', out)
+    assert re.search(r'false alarms after persistence: [1-9]', run('--cutoff', 'fpr=0.9')[1])
     assert TrainedModel.load(str(tmp_path / 'm')).paper_calibration.false_alarms_per_hour > 100.0
 
 
@@ -120,7 +112,7 @@ def test_an_error_names_the_way_out_and_writes_nothing(run, tmp_path, monkeypatc
 
 
 def test_recordings_that_were_trained_on_are_refused(run, robot_bags: Bags, model_file: str,
-                                                     tmp_path, capsys) -> None:
+                                                     tmp_path) -> None:
     os.symlink(robot_bags[0], tmp_path / 'renamed.bag')
     for option in ('--normal', '--faulty'):
         code, _, err = run(option, str(tmp_path / 'renamed.bag'), '--inject', 'starve')
@@ -131,7 +123,7 @@ def test_recordings_that_were_trained_on_are_refused(run, robot_bags: Bags, mode
     assert not (tmp_path / 'm').exists()
 
 
-def test_the_part_that_was_not_trained_on_is_welcome(robot_bags: Bags, tmp_path, capsys) -> None:
+def test_the_part_that_was_not_trained_on_is_welcome(robot_bags: Bags, tmp_path) -> None:
     model = str(tmp_path / 'm')
     trained([robot_bags[0]], tmp_path / 'm', '--end', '15', '--detector', 'both')
     arguments = ['--model', model, '--detector', 'paper', '--inject', 'starve', '-o', model,
@@ -151,13 +143,10 @@ def test_a_fault_that_is_over_before_the_detector_settled_is_refused(
     assert not (tmp_path / 'm').exists()
 
 
-def test_faults_that_score_no_lower_find_no_threshold() -> None:
-    for normal, abnormal in (([1.0, 2.0], [3.0, 4.0]), ([1.0, 1.0], [1.0])):
+def test_a_threshold_that_cannot_be_found_or_that_no_window_could_miss_is_refused() -> None:
+    for scores in (([1.0, 2.0], [3.0, 4.0]), ([1.0, 1.0], [1.0])):
         with pytest.raises(ValueError, match='finds no threshold.*fpr=RATE'):
-            ThresholdRule('youden').choose(Roc(normal, abnormal))
-
-
-def test_a_threshold_that_no_window_could_ever_miss_is_refused() -> None:
+            ThresholdRule('youden').choose(Roc(*scores))
     normal = [0.0, 0.0] + [1.0] * 98
     with pytest.raises(ValueError, match='allow a higher rate'):
         ThresholdRule('fpr', 0.01).choose(Roc(normal, []))
@@ -174,28 +163,15 @@ def test_faults_that_score_higher_get_a_warning(run, make_bag: Callable[..., str
     assert captured.err.startswith('calibrate: warning: AUC 0.')
 
 
-@pytest.mark.parametrize('text, method, rate', [
-    ('youden', 'youden', 0.0), ('closest', 'closest', 0.0), ('fpr=0.001', 'fpr', 0.001),
-    ('fpr=0', 'fpr', 0.0), ('fpr=1e-3', 'fpr', 0.001)])
-def test_a_cutoff_is_read_and_written(text: str, method: str, rate: float) -> None:
-    assert ThresholdRule.parse(text) == ThresholdRule(method, rate)
-    assert ThresholdRule.parse(str(ThresholdRule.parse(text))) == ThresholdRule(method, rate)
-
-
-@pytest.mark.parametrize('text', ['best', 'fpr', 'fpr=', 'fpr=-1', 'fpr=1', 'fpr=nan', 'fpr=2'])
-def test_another_cutoff_is_refused(text: str) -> None:
-    with pytest.raises(ValueError):
-        ThresholdRule.parse(text)
-
-
-def test_parts_of_bags_are_read(tmp_path) -> None:
-    assert BagPart.parse('a.bag') == BagPart('a.bag')
-    assert BagPart.parse('a.bag@7.5') == BagPart('a.bag', 7.5)
-    assert BagPart.parse('a@b.bag@7-9.25') == BagPart('a@b.bag', 7.0, 9.25)
-    assert BagPart.parse('a@b.bag') == BagPart('a@b.bag')
-    there = tmp_path / 'run@3'
-    there.write_text('')
-    assert BagPart.parse(str(there)) == BagPart(str(there))
+def test_a_cutoff_is_read_and_written_and_others_are_refused() -> None:
+    for text, rule in (('youden', ThresholdRule('youden', 0.0)),
+                       ('closest', ThresholdRule('closest', 0.0)),
+                       ('fpr=0', ThresholdRule('fpr', 0.0)),
+                       ('fpr=1e-3', ThresholdRule('fpr', 0.001))):
+        assert ThresholdRule.parse(text) == ThresholdRule.parse(str(rule)) == rule
+    for text in ('best', 'fpr', 'fpr=', 'fpr=-1', 'fpr=1', 'fpr=nan', 'fpr=2'):
+        with pytest.raises(ValueError):
+            ThresholdRule.parse(text)
 
 
 def test_intervals_are_those_of_the_textbooks() -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Dict
 
 import pytest
-from conftest import robot, train_tuned
+from conftest import error_of, printed_by, robot, train_tuned
 
 from self_awareness import EvidenceModel, TrainedModel, Tuning
 from self_awareness.commands import calibrate, info, train
@@ -18,13 +18,12 @@ from self_awareness.commands import calibrate, info, train
 LASER, SLAM = '/laser /scan std_msgs/String', '/slam /map std_msgs/String'
 
 
-def as_json(capsys: pytest.CaptureFixture, path: str) -> Dict[str, Any]:
-    assert info.main([path, '--json']) == 0
-    return json.loads(capsys.readouterr().out)
+def as_json(path: str) -> Dict[str, Any]:
+    return json.loads(printed_by(info, [path, '--json']))
 
 
-def test_json_holds_all_but_the_histograms(model_file: str, capsys) -> None:
-    summary = as_json(capsys, model_file)
+def test_json_holds_all_but_the_histograms(model_file: str) -> None:
+    summary = as_json(model_file)
     assert summary['window'] == 0.1 and summary['bin_size'] == 0.01
     assert summary['horizon'] is None and summary['calibration'] is None
     assert summary['graph'] == [] and summary['evidence']['calibration'] is None
@@ -40,20 +39,19 @@ def test_json_holds_all_but_the_histograms(model_file: str, capsys) -> None:
     assert summary['lowest_rate'] == pytest.approx(1 / 0.37, rel=0.02)
 
 
-def test_json_holds_the_calibration(model_file: str, robot_bags, tmp_path, capsys) -> None:
+def test_json_holds_the_calibration(model_file: str, robot_bags, tmp_path) -> None:
     output = str(tmp_path / 'm')
     assert calibrate.main(['--model', model_file, '--normal', robot_bags[1], '--detector', 'paper',
                            '--cutoff', 'fpr=0.01', '-o', output]) == 0
-    capsys.readouterr()
-    found = as_json(capsys, output)['calibration']
+    found = as_json(output)['calibration']
     stored = TrainedModel.load(output).paper_calibration
     assert found['threshold'] == stored.threshold and found['method'] == 'fpr=0.01'
     assert found['auc'] is None and found['true_positive_rate'] is None  # no faulty windows
     assert found['normal'][0]['fingerprint'] == f'{stored.normal[0].fingerprint:016x}'
 
 
-def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
-    found = as_json(capsys, evidence_model)['evidence']
+def test_json_holds_the_evidence(evidence_model: str) -> None:
+    found = as_json(evidence_model)['evidence']
     model = TrainedModel.load(evidence_model)
     stored = model.calibration
     assert set(found['tracks']) <= {'overdue', 'pace', 'pairs', 'deadlines', 'size'}
@@ -72,8 +70,7 @@ def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
     assert sum(calibration['judged_tracks'].values()) == judged
 
 
-def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys,
-                                                     monkeypatch) -> None:
+def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, monkeypatch) -> None:
     monkeypatch.setattr('rosgraph.Master.getSystemState', lambda _: [
         [['/scan', ['/laser']], ['/watch/status', ['/watch']]],
         [['/scan', ['/slam', '/map_saver', '/watch']]], []])
@@ -83,8 +80,7 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
                         lambda _, nodes: {node: 'base' for node in nodes})
     output = str(tmp_path / 'm')
     assert train.main([long_bags[0], '--graph', '-o', output]) == 0
-    capsys.readouterr()
-    summary = as_json(capsys, output)
+    summary = as_json(output)
     assert summary['graph'] == [
         {'publisher': '/laser', 'topic': '/scan', 'subscriber': '/map_saver'},
         {'publisher': '/laser', 'topic': '/scan', 'subscriber': '/slam'}]
@@ -93,62 +89,31 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
     # Left out in turn, the halves of the training say how many are to be expected.
     assert calibration['false_alarms_per_hour'] == TrainedModel.load(
         output).calibration.false_alarms_per_hour >= 0.0
-    assert info.main([output, '--details']) == 0
-    printed = capsys.readouterr().out
+    printed = printed_by(info, [output, '--details'])
     assert 'sources that somebody listens to: 1, connections: 2' in printed
     assert 'not watched, since they publish nothing: /map_saver' in printed
 
 
-def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path, capsys) -> None:
+def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path) -> None:
     output = train_tuned(long_bags[:1], tmp_path / 'm', least_effect=0.0025, predecessors=1)
     assert calibrate.main(['--model', output, '--normal', long_bags[1], '-o', output]) == 0
-    capsys.readouterr()
-    evidence = as_json(capsys, output)['evidence']
+    evidence = as_json(output)['evidence']
     assert evidence['calibration']['method'] == 'held-out'
     assert evidence['tuning']['least_effect'] == 0.0025
-    assert info.main([output, '--tuning']) == 0
-    lines = capsys.readouterr().out.splitlines()
+    lines = printed_by(info, [output, '--tuning']).splitlines()
     assert [line.split()[0] for line in lines] == [each.name for each in Tuning.numbers()]
     assert [line.split()[:2] for line in lines if '(default: ' in line] == [
         ['predecessors', '1'], ['least_effect', '0.0025']]
 
 
-def test_too_rare_is_what_has_fewer_gaps_than_the_model_asks_for(long_bags, tmp_path,
-                                                                 capsys) -> None:
-    output = train_tuned(long_bags[:1], tmp_path / 'm', fewest_gaps=1000)  # the battery has 324
-    summary = as_json(capsys, output)
-    assert summary['fewest_gaps'] == 1000
-    judged = {kind['source']: kind['judged'] for kind in summary['event_types']}
-    assert judged == {'/battery': False, '/laser': True, '/slam': True}
-    assert summary['evidence']['not_judged'] == ['/battery /charge std_msgs/String']
-    assert info.main([output, '--details']) == 0
-    said = capsys.readouterr().out
-    assert 'too rare to judge: fewer than 1000 gaps' in said
-    assert '  not judged: /battery /charge std_msgs/String\n' in said
-    assert calibrate.main(['--model', output, '--normal', long_bags[1], '-o', output]) == 0
-    assert ('; /battery is not watched: 325 messages in training, more than 1000 are needed\n'
-            in capsys.readouterr().out)
-    assert as_json(capsys, str(output))['fewest_gaps'] == 1000
-
-
-def test_people_read_the_verdict_and_what_comes_next(evidence_model: str, capsys) -> None:
-    assert info.main([evidence_model]) == 0
-    lines = capsys.readouterr().out.splitlines()
-    assert lines[0].startswith('learned from 2 starts, 4 min: at most 1 false alarm an hour; ')
-    assert lines[1].startswith('record next: 34 min of other starts, for half as many false ')
-    assert lines[2:] == ['next:', '  roslaunch self_awareness monitor.launch '
-                         f'model:={evidence_model}']
-
-
-def test_people_read_the_same(model_file: str, evidence_model: str, capsys) -> None:
+def test_people_read_the_same(model_file: str, evidence_model: str) -> None:
     for model, parts in (
             (evidence_model, ['evidence     watches: overdue 3, pace 6',
                               'limits       of recordings that were not trained on, for 0.5 false',
-                              'graph        none', 'tuesday.bag']),
+                              'graph        none', 'tuesday.bag', 'next:\n  roslaunch ']),
             (model_file, ['not calibrated', 'first.bag', '1282', LASER, SLAM, '/rosout_agg',
                           'no horizon'])):
-        assert info.main([model, '--details']) == 0
-        text = capsys.readouterr().out
+        text = printed_by(info, [model, '--details'])
         assert [part for part in parts if part not in text] == []
         assert ('death found after' in text) == (model == evidence_model)
 
@@ -164,13 +129,12 @@ def test_a_reader_that_has_seen_enough_is_told_nothing(model_file: str) -> None:
 
 
 def test_rates_of_a_recording_stand_beside_the_usual_ones_what_is_most_off_first(
-        model_file: str, make_bag: Any, capsys: pytest.CaptureFixture) -> None:
+        model_file: str, make_bag: Any) -> None:
     messages = [each for each in robot(3000.0, 20.0) if each[1] != '/slam']
     messages += [(3000.0 + 0.5 * k, '/rostopic', '/cmd_vel') for k in range(1, 40)]
     half = [each for k, each in enumerate(m for m in messages if m[1] == '/laser') if k % 2]
     bag = make_bag('odd.bag', sorted([m for m in messages if m[1] != '/laser'] + half))
-    assert info.main([bag, '--model', model_file]) == 0
-    head, columns, *rows = capsys.readouterr().out.splitlines()
+    head, columns, *rows = printed_by(info, [bag, '--model', model_file]).splitlines()
     assert head.startswith(f'{bag}: 20.0 s') or head.startswith(f'{bag}: 19.')
     assert columns.split() == ['component', 'topic', 'now', '[Hz]', 'usual', '[Hz]', 'ratio']
     cells = [row.split() for row in rows]
@@ -183,8 +147,8 @@ def test_rates_of_a_recording_stand_beside_the_usual_ones_what_is_most_off_first
     assert 0.45 < float(laser[4]) < 0.55 and len(laser) == 5
     assert 0.9 < float(battery[4]) < 1.1
 
-    assert info.main([f'{bag}@5-15', bag, '--model', model_file, '--json']) == 0
-    part, whole = json.loads(capsys.readouterr().out)['recordings']
+    part, whole = json.loads(printed_by(info, [f'{bag}@5-15', bag, '--model', model_file,
+                                               '--json']))['recordings']
     assert part['duration'] == pytest.approx(10.0)
     assert whole['topics'][0] == {'component': '/slam', 'topic': '/map', 'rate': 0.0,
                                   'usual_rate': pytest.approx(20.0, rel=0.1), 'ratio': 0.0,
@@ -199,13 +163,10 @@ def test_rates_of_what_cannot_be_read_are_refused(model_file: str, robot_bags: A
     assert '/laser' in said.out and '/gone.bag' in said.err
     assert info.main([robot_bags[0], '/gone.bag', '--model', model_file, '--skip-bad']) == 0
     assert 'skipped: /gone.bag' in capsys.readouterr().err
-    assert info.main([model_file, '--model', model_file]) == 1
-    assert 'is a model, and no recording' in capsys.readouterr().err
-    assert info.main([robot_bags[0], '--model', model_file, '--tuning']) == 1
-    assert '--tuning: is for one model alone' in capsys.readouterr().err
-    assert info.main([robot_bags[0], '--model', robot_bags[0]]) == 1
-    assert 'holds no model' in capsys.readouterr().err
-    assert info.main([robot_bags[0]]) == 1
-    error = capsys.readouterr().err
+    assert 'is a model, and no recording' in error_of(info, [model_file, '--model', model_file])
+    assert '--tuning: is for one model alone' in error_of(info, [robot_bags[0], '--model',
+                                                                 model_file, '--tuning'])
+    assert 'holds no model' in error_of(info, [robot_bags[0], '--model', robot_bags[0]])
+    error = error_of(info, [robot_bags[0]])
     assert f"info '{robot_bags[0]}' --model MODEL" in error
     assert f"score '{robot_bags[0]}' --model MODEL" in error and 'train' not in error

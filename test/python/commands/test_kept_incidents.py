@@ -10,6 +10,7 @@ import genpy
 import genpy.dynamic
 import pytest
 import rosbag
+from conftest import error_of, printed_by
 
 from self_awareness.commands import incidents
 from self_awareness.msg import FileVersion, Incident, Incidents, SelfAwareness
@@ -89,19 +90,15 @@ def test_one_is_shown_with_its_record_and_the_way_to_its_report(
             '--report incident_7.html') in capsys.readouterr().out
 
 
-def test_what_was_open_when_its_monitor_ended_is_unknown_since(tmp_path: Path,
-                                                               capsys: Any) -> None:
+def test_what_was_open_when_its_monitor_ended_is_unknown_since(tmp_path: Path) -> None:
     file = write(tmp_path / 'w.incidents', [incident(7, '/player', NOON_S, unknown=True)])
-    assert incidents.main(['--file', file]) == 0
-    said = capsys.readouterr().out
+    said = printed_by(incidents, ['--file', file])
     assert 'open: 0' in said and '  unknown since 2026-09-21 14:13:40 UTC  /player' in said
-    assert incidents.main(['--file', file, '7']) == 0
-    assert 'unknown since  2026-09-21 14:13:40' in capsys.readouterr().out
-    assert incidents.main(['--file', file, '--json']) == 0
-    assert json.loads(capsys.readouterr().out)[0]['unknown'] is True
+    assert 'unknown since  2026-09-21 14:13:40' in printed_by(incidents, ['--file', file, '7'])
+    assert json.loads(printed_by(incidents, ['--file', file, '--json']))[0]['unknown'] is True
 
 
-def test_the_incidents_of_an_older_monitor_are_known(tmp_path: Path, capsys: Any) -> None:
+def test_the_incidents_of_an_older_monitor_are_known(tmp_path: Path) -> None:
     text = re.sub(r'\nbool unknown .*', '', Incidents._full_text)
     assert text != Incidents._full_text
     former = genpy.dynamic.generate_dynamic('self_awareness/Incidents', text)
@@ -112,31 +109,27 @@ def test_the_incidents_of_an_older_monitor_are_known(tmp_path: Path, capsys: Any
     path = tmp_path / 'w.incidents'
     with rosbag.Bag(str(path), 'w') as bag:
         bag.write('/incidents', kept, genpy.Time(1))
-    assert incidents.main(['--file', str(path), '--json']) == 0
-    known, = json.loads(capsys.readouterr().out)
+    known, = json.loads(printed_by(incidents, ['--file', str(path), '--json']))
     assert (known['id'], known['over'], known['unknown'], known['alarms']) == (7, False, False, 3)
 
 
-def test_all_monitors_are_found_in_ros_home(tmp_path: Path, capsys: Any,
+def test_all_monitors_are_found_in_ros_home(tmp_path: Path,
                                             monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv('ROS_HOME', str(tmp_path))
-    assert incidents.main([]) == 1
-    assert 'no monitor of this machine has had an incident' in capsys.readouterr().err
+    assert 'no monitor of this machine has had an incident' in error_of(incidents, [])
     for name in ('first', 'second'):
         write(tmp_path / 'self_awareness' / name / f'{name}.incidents', KEPT[:1])
-    assert incidents.main([]) == 0
-    said = capsys.readouterr().out
+    said = printed_by(incidents, [])
     assert 'first.incidents: incidents: 1' in said and 'second.incidents: incidents: 1' in said
 
 
-def test_errors_name_what_is_wrong(run: Callable[..., str], tmp_path: Path, capsys: Any) -> None:
+def test_errors_name_what_is_wrong(run: Callable[..., str], tmp_path: Path) -> None:
     assert 'no incident 99 in ' in run('99', code=1)
     damaged = tmp_path / 'damaged.incidents'
     damaged.write_bytes(b'no bag')
-    assert incidents.main(['--file', str(damaged)]) == 1
-    assert f'{damaged}: the incidents in it are damaged' in capsys.readouterr().err
-    assert incidents.main(['--file', str(tmp_path / 'none')]) == 1
-    assert 'there is no such file' in capsys.readouterr().err
+    assert f'{damaged}: the incidents in it are damaged' in error_of(incidents, ['--file',
+                                                                                 str(damaged)])
+    assert 'there is no such file' in error_of(incidents, ['--file', str(tmp_path / 'none')])
 
 
 def test_what_the_recovery_did_is_shown_with_the_incident(run: Callable[..., str], tmp_path: Path,

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
 import pytest
-from conftest import Message
+from conftest import Message, error_of, printed_by
 from recorded_logs import write_log
 
 from self_awareness import Acceptance, TrainedModel, accepted_file
@@ -53,10 +53,8 @@ def model(learned: Tuple[str, List[str]], tmp_path: Path) -> str:
     return str(path)
 
 
-def _age(capsys, *arguments: str) -> Dict[str, Any]:
-    capsys.readouterr()
-    assert info.main([*arguments, '--json']) == 0
-    return json.loads(capsys.readouterr().out)
+def _age(*arguments: str) -> Dict[str, Any]:
+    return json.loads(printed_by(info, [*arguments, '--json']))
 
 
 def _kept(model: str) -> Path:
@@ -69,51 +67,39 @@ def test_a_robot_that_stays_as_it_is_does_not_drift(model: str, capsys) -> None:
     folder = _kept(model)
     for day in range(8):
         write_log(folder / f'{day}.bag', _robot(_DAY_S * (10 + day), 10 + day))
-    age = _age(capsys, model, '--age')
+    age = _age(model, '--age')
     assert (age['samples'], age['recordings'], age['drifting']) == (8, 8, [])
     assert {each['component'] for each in age['components']} == {'/laser', '/slam', '/battery'}
     assert all(0.0 <= each['usual_share'] < 1.0 for each in age['components'])
-    assert info.main([model, '--age']) == 0
-    line, = capsys.readouterr().out.splitlines()
+    line, = printed_by(info, [model, '--age']).splitlines()
     assert re.fullmatch(r'learned until 1970-\S+ \S+ UTC; heard since for 17 min in 8 starts of '
                         r'the robot or days of one, the last 14 days later: nothing drifts', line)
     assert info.main([model, '--age', '--details']) == 0
     assert re.search(r'^  /laser +\d+ % +\d+ % +\S+ of 300$', capsys.readouterr().out, re.M)
 
 
-def test_a_rate_that_falls_from_day_to_day_is_told_before_the_alarm(model: str, capsys) -> None:
+def test_a_rate_that_falls_from_day_to_day_is_told_before_the_alarm(model: str) -> None:
     folder = _kept(model)
     period = 0.05
     for day in range(60):
         period *= 1.005 if day >= 12 else 1.0
         write_log(folder / f'{day:02d}.bag', _robot(_DAY_S * (10 + day), 10 + day, period))
-    age = _age(capsys, model, '--age')
+    age = _age(model, '--age')
     told = min(each['told_by_sample'] for each in age['components'] if each['told_by_sample'])
     assert age['drifting'] and 12 < told <= age['samples']
     assert {'/laser', '/slam'} >= set(age['drifting'])
-    assert info.main([model, '--age']) == 0
-    lines = capsys.readouterr().out.splitlines()
+    lines = printed_by(info, [model, '--age']).splitlines()
     assert lines[0].endswith(f'drifting: {", ".join(age["drifting"])}')
     assert lines[1].split() == ['component', 'usual', 'last,', 'of', 'the', 'limit']
     assert [line.split()[0] for line in lines[2:2 + len(age['drifting'])]] == age['drifting']
 
 
-def test_recordings_of_a_start_are_one_sample_a_day(model: str, capsys) -> None:
-    folder = _kept(model)
-    begins = [_DAY_S * 10, _DAY_S * 10 + 140.0,  # one start: 10 s lie between them
-              _DAY_S * 10 + 600.0]               # another one
-    for number, begin in enumerate(begins):
-        write_log(folder / f'{number}.bag', _robot(begin, number))
-    age = _age(capsys, model, '--age')
-    assert (age['recordings'], age['samples']) == (3, 2)
-
-
 def test_what_is_not_normal_or_was_learned_says_nothing(model: str, learned: Tuple[str, List[str]],
-                                                        tmp_path: Path, capsys) -> None:
+                                                        tmp_path: Path) -> None:
     dead = write_log(tmp_path / 'dead.bag', _robot(_DAY_S * 10, 1, dead='/laser'))
     short = write_log(tmp_path / 'short.bag', _robot(_DAY_S * 11, 2, length=50.0))
     good = write_log(tmp_path / 'good.bag', _robot(_DAY_S * 12, 3))
-    age = _age(capsys, model, '--age', *learned[1], dead, short, good)
+    age = _age(model, '--age', *learned[1], dead, short, good)
     assert age['recordings'] == 1
     reasons = {Path(each['recording']).name: each['reason'] for each in age['left_out']}
     assert reasons == {'0.bag': 'learned from', '1.bag': 'learned from', '2.bag': 'learned from',
@@ -160,22 +146,19 @@ def test_no_model_is_lost_when_it_is_taken_again(model: str, tmp_path: Path) -> 
 
 @pytest.mark.parametrize('is_model, why', [(False, ''), (True, ': it has no limits')])
 def test_what_is_no_model_or_has_no_limits_is_not_taken(
-        is_model: bool, why: str, model: str, model_file: str, capsys) -> None:
+        is_model: bool, why: str, model: str, model_file: str) -> None:
     before = Path(model).read_bytes()
     Path(f'{model}.new').write_bytes(Path(model_file).read_bytes() if is_model else b'no model')
-    assert learn_more.main(['--model', model, '--take']) == 1
-    assert f'robot.model.new{why}' in capsys.readouterr().err
+    assert f'robot.model.new{why}' in error_of(learn_more, ['--model', model, '--take'])
     assert Path(model).read_bytes() == before and not Path(f'{model}.before').exists()
 
 
 @pytest.mark.parametrize('program', [info, learn_more])
 def test_bad_input_is_one_line(program, model: str, model_file: str,
-                               learned: Tuple[str, List[str]], tmp_path: Path, capsys) -> None:
+                               learned: Tuple[str, List[str]], tmp_path: Path) -> None:
     def run(path: str, *logs: str) -> str:
-        capsys.readouterr()
         given = [path, '--age', *logs] if program is info else ['--model', path, *logs]
-        assert program.main(given) == 1
-        error, = capsys.readouterr().err.splitlines()
+        error, = error_of(program, given).splitlines()
         return error
 
     assert f'there is no folder {model}.kept: name event logs' in run(model)
@@ -187,9 +170,9 @@ def test_bad_input_is_one_line(program, model: str, model_file: str,
 
 
 def test_nothing_to_learn_from_is_an_error(model: str, learned: Tuple[str, List[str]],
-                                           tmp_path: Path, capsys) -> None:
+                                           tmp_path: Path) -> None:
     # Too short to be judged: whether it is normal is not known.
     short = write_log(tmp_path / 'short.bag', _robot(_DAY_S * 11, 2, length=50.0))
-    assert learn_more.main(['--model', model, learned[1][0], short]) == 1
-    assert 'no recording is left to learn from' in capsys.readouterr().err
+    assert 'no recording is left to learn from' in error_of(learn_more, ['--model', model,
+                                                                         learned[1][0], short])
     assert not Path(f'{model}.new').exists()

@@ -12,23 +12,23 @@ from typing import Any, Callable, Dict, List, Tuple
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
-from conftest import error_of, robot, trained, wait_until
+from conftest import error_of, printed_by, robot, trained, wait_until
 
 from self_awareness import TrainedModel, stable_name
-from self_awareness.commands import train
+from self_awareness.commands import calibrate, info, score, train
 
 Bags = Tuple[str, str]
 
 
-def said(capsys: pytest.CaptureFixture, arguments: List[str]) -> List[str]:
+def said(arguments: List[str]) -> List[str]:
     """Return the lines that are printed with --details."""
-    assert train.main([*arguments, '--details']) == 0
-    return [' '.join(line.split()) for line in capsys.readouterr().out.splitlines()]
+    lines = printed_by(train, [*arguments, '--details']).splitlines()
+    return [' '.join(line.split()) for line in lines]
 
 
-def test_it_says_what_it_learned(robot_bags: Bags, tmp_path, capsys) -> None:
+def test_it_says_what_it_learned(robot_bags: Bags, tmp_path) -> None:
     output = str(tmp_path / 'm')
-    lines = said(capsys, [*robot_bags, '-o', output])
+    lines = said([*robot_bags, '-o', output])
     assert f'{robot_bags[0]}: 30.0 s, 1282 events' in lines
     for line in ('recordings 2, 60 s', 'events 2564', 'sources 3', 'pairs 9 of 9 with delays'):
         assert line in lines
@@ -39,10 +39,9 @@ def test_it_says_what_it_learned(robot_bags: Bags, tmp_path, capsys) -> None:
     assert model.encoding.source == 'callerid' and model.detectors == 'evidence'
 
 
-def test_parts_of_bags_are_trained_on(robot_bags: Bags, tmp_path, capsys) -> None:
+def test_parts_of_bags_are_trained_on(robot_bags: Bags, tmp_path) -> None:
     output, (first, second) = str(tmp_path / 'm'), robot_bags
-    lines = said(capsys, [f'{first}@2-12', f'{first}@12.01-20', second, '--start', '5',
-                          '-o', output])
+    lines = said([f'{first}@2-12', f'{first}@12.01-20', second, '--start', '5', '-o', output])
     assert f'{first}@2-12: 10.0 s, 428 events' in lines
     assert [line.split(':')[0] for line in lines[1:3]] == [f'{first}@12.01-20', f'{second}@5']
     assert lines[3].startswith('learned from 2 starts, 43 s: ')
@@ -55,28 +54,19 @@ def test_parts_of_bags_are_trained_on(robot_bags: Bags, tmp_path, capsys) -> Non
 @pytest.mark.parametrize('parts, same', [
     (('@2-12', '@11-20'), ('@11-20', '@2-12')), (('', '@25'), ('@25', '')),
     (('@3', '@2-4'), ('@2-4', '@3'))])
-def test_parts_that_overlap_are_refused(robot_bags: Bags, parts: Bags, same: Bags, tmp_path,
-                                        capsys) -> None:
+def test_parts_that_overlap_are_refused(robot_bags: Bags, parts: Bags, same: Bags,
+                                        tmp_path) -> None:
     bag = robot_bags[0]
-    error = error_of(train, [bag + parts[0], bag + parts[1], '-o', str(tmp_path / 'm')], capsys)
+    error = error_of(train, [bag + parts[0], bag + parts[1], '-o', str(tmp_path / 'm')])
     assert f'{bag}{same[0]}: the same recording as {bag}{same[1]}; name it once' in error
 
 
-def test_types_too_rare_to_judge_are_listed(make_bag: Callable[..., str], tmp_path,
-                                            capsys) -> None:
-    bag = make_bag('rare.bag', sorted([*robot(10.0), (15.0, '/door', '/open'),
-                                       (20.0, '/door', '/open')]))
-    lines = said(capsys, [bag, '-o', str(tmp_path / 'm')])
-    assert 'not judged: /door /open std_msgs/String' in lines
-
-
-def test_the_options_reach_the_model(robot_bags: Bags, tmp_path, capsys) -> None:
+def test_the_options_reach_the_model(robot_bags: Bags, tmp_path) -> None:
     encoding = tmp_path / 'encoding.yaml'
     encoding.write_text('source: none\nexclude_topics: [/charge]\n')
     output = str(tmp_path / 'm')
-    lines = said(capsys, [robot_bags[0], '-o', output, '--bin', '0.005', '--window', '0.25',
-                          '--horizon', '10', '--start', '10', '--end', '20', '--encoding',
-                          str(encoding)])
+    lines = said([robot_bags[0], '-o', output, '--bin', '0.005', '--window', '0.25', '--horizon',
+                  '10', '--start', '10', '--end', '20', '--encoding', str(encoding)])
     assert 'sources not told apart' in lines
     model = TrainedModel.load(output)
     assert (model.bin_size, model.window, model.horizon_bins) == (5_000_000, 250_000_000, 2000)
@@ -84,6 +74,23 @@ def test_the_options_reach_the_model(robot_bags: Bags, tmp_path, capsys) -> None
                                                          '- /map std_msgs/String']
     start, end = model.recordings[0].start / 1e9, model.recordings[0].end / 1e9
     assert 1010.0 <= start < 1010.05 and 1019.95 < end <= 1020.0
+
+
+@pytest.mark.parametrize('detector, other', [('evidence', 'paper'), ('paper', 'evidence')])
+def test_a_model_is_for_the_detector_that_it_was_trained_for(
+        detector: str, other: str, long_bags: Bags, tmp_path) -> None:
+    model, output = str(tmp_path / 'm'), str(tmp_path / 'calibrated')
+    trained([long_bags[0]], tmp_path / 'm', '--end', '50', '--detector', detector)
+    model_of_both = trained([long_bags[1]], tmp_path / 'm', '--add-to', model)
+    assert model_of_both.detectors == detector and len(model_of_both.recordings) == 2
+    for program, arguments in (
+            (calibrate, ['--model', model, '--normal', long_bags[0], '-o', output]),
+            (score, [long_bags[0], '--model', model])):
+        error = error_of(program, [*arguments, '--detector', other])
+        assert f'{model}: it holds no counts for the {other}' in error
+        assert f'--detector {other} or both' in error
+    assert not os.path.exists(output)
+    assert f'detector     {detector}' in printed_by(info, [model, '--details'])
 
 
 def test_one_recording_gives_preliminary_limits_by_its_halves(long_bags: Bags, tmp_path,
@@ -115,10 +122,10 @@ def test_too_little_for_limits_is_told_and_the_model_is_written(robot_bags: Bags
     assert '50 s' in warning
 
 
-def test_the_graph_needs_a_master(robot_bags: Bags, tmp_path, monkeypatch, capsys) -> None:
+def test_the_graph_needs_a_master(robot_bags: Bags, tmp_path, monkeypatch) -> None:
     # Nobody listens on port 1.
     monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')
-    error = error_of(train, [robot_bags[0], '--graph', '-o', str(tmp_path / 'm')], capsys)
+    error = error_of(train, [robot_bags[0], '--graph', '-o', str(tmp_path / 'm')])
     assert error.startswith('train: error: --graph: no master at http://127.0.0.1:1')
     assert 'ROS_MASTER_URI' in error
     assert not (tmp_path / 'm').exists()

@@ -9,14 +9,19 @@ from typing import Any, List, Optional, Tuple
 from unittest.mock import patch
 
 import pytest
+from conftest import error_of
 
 from self_awareness import Tuning
-from self_awareness_evaluation import evaluate, simulated
+from self_awareness.parts import BagPart
+from self_awareness.stamps import SECOND_NS
+from self_awareness_evaluation import evaluate, outages, simulated
+from self_awareness_evaluation.experiment import Unit
 from self_awareness_evaluation.families.protocol import Records, recorded
 from self_awareness_evaluation.families.scene import CRASH
-from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, REAL, Robot
-from self_awareness_evaluation.rows import Row, Subject, load, save
-from self_awareness_evaluation.variants import add_changes, change_of, tuning_of
+from self_awareness_evaluation.outages import Case, JudgedCase, Span
+from self_awareness_evaluation.records import FAMILIES, NORMAL, OWN, REAL, Robot, SystemAlarm
+from self_awareness_evaluation.rows import HOUR_S, Row, Subject, load, save
+from self_awareness_evaluation.variants import Variant, add_changes, change_of, tuning_of
 
 
 @pytest.fixture(name='written', scope='module')
@@ -149,10 +154,9 @@ def test_wrong_changes_are_refused(wrong: List[str], told: List[str], tmp_path: 
 
 
 @pytest.mark.parametrize('part', ['simulated', 'families'])
-def test_a_change_that_no_system_has_is_refused(part: str, tmp_path: Path, capsys: Any) -> None:
-    assert evaluate.main([part, '--systems', 'gaps', '--without', CHANNELS[0],
-                          '-o', str(tmp_path / 'out')]) == 1
-    assert '--systems' in capsys.readouterr().err
+def test_a_change_that_no_system_has_is_refused(part: str, tmp_path: Path) -> None:
+    assert '--systems' in error_of(evaluate, [part, '--systems', 'gaps', '--without', CHANNELS[0],
+                                              '-o', str(tmp_path / 'out')])
     assert not (tmp_path / 'out').exists()
 
 
@@ -214,22 +218,80 @@ def test_a_cell_has_one_value_or_both(folders: List[str], tmp_path: Path) -> Non
     assert '| 3 in 2.0 h → **1 in 2.0 h** |' in bursty
 
 
-def test_folders_without_results_are_refused(folders: List[str], tmp_path: Path,
-                                             capsys: Any) -> None:
+def test_folders_without_results_are_refused(folders: List[str], tmp_path: Path) -> None:
     (tmp_path / 'empty').mkdir()
-    assert evaluate.main(['compare', folders[0], str(tmp_path / 'empty'),
-                          '-o', str(tmp_path / 'out')]) == 1
-    assert 'empty: holds no results' in capsys.readouterr().err
-    assert evaluate.main(['compare', folders[0], str(tmp_path / 'missing')]) == 1
-    assert 'missing' in capsys.readouterr().err
+    assert 'empty: holds no results' in error_of(evaluate, ['compare', folders[0],
+                                                            str(tmp_path / 'empty'), '-o',
+                                                            str(tmp_path / 'out')])
+    assert 'missing' in error_of(evaluate, ['compare', folders[0], str(tmp_path / 'missing')])
 
 
-def test_results_of_other_commands_are_refused(folders: List[str], tmp_path: Path,
-                                               capsys: Any) -> None:
+def test_results_of_other_commands_are_refused(folders: List[str], tmp_path: Path) -> None:
     write(tmp_path / 'other' / 'all', OF_FAMILIES, OF_OWN, 'evaluate families --hours 3')
-    assert evaluate.main(['compare', folders[0], str(tmp_path / 'other')]) == 1
-    error = capsys.readouterr().err
+    error = error_of(evaluate, ['compare', folders[0], str(tmp_path / 'other')])
     assert '--hours 2' in error and '--hours 3' in error
     write(tmp_path / 'other' / 'more', OF_FAMILIES, OF_OWN)
-    assert evaluate.main(['compare', folders[0], str(tmp_path / 'other')]) == 1
-    assert 'more: only one of' in capsys.readouterr().err
+    assert 'more: only one of' in error_of(evaluate, ['compare', folders[0],
+                                                      str(tmp_path / 'other')])
+
+
+FIRST = 1_600_000_000 * SECOND_NS
+
+
+def rows_of(alarms: List[Span], monkeypatch: pytest.MonkeyPatch) -> List[Row]:
+    """Let a system that raises these alarms judge a recording of 100 s, with an outage or not."""
+    normal = BagPart('a.bag')
+    cases = (Case('faulty', normal, normal, 'a.bag', (50.0, 60.0), ((10.0, 50.0), (70.0, 1e9))),
+             Case('healthy', normal, normal, 'a.bag', None, ((0.0, 1e9),)))
+    raised = [SystemAlarm(FIRST + round(start * SECOND_NS), FIRST + round(end * SECOND_NS), True,
+                          [], culprit='/a') for start, end in alarms]
+    said = JudgedCase(raised, [], FIRST, FIRST + 100 * SECOND_NS, 3)
+    monkeypatch.setattr(outages, 'SYSTEMS', {'oracle': lambda *_: said})
+    unit = Unit(lambda _: [], REAL, 'a case', (Variant('oracle'),))
+    return [row for case in cases for row in outages.rows(case, Path(), unit)]
+
+
+@pytest.mark.parametrize('alarms, false, standing_s, latency_s, stood, level', [
+    # Start-up and the time after the outage are not counted, but the alarm may not stay in them.
+    ([(5.0, 12.0), (50.5, 72.0)], 0, 4.0, 0.5, False, 'ERROR'),
+    ([(48.0, 55.0), (56.0, 57.0)], 1, 2.0, 6.0, True, ''),
+    ([(61.0, 65.0), (80.0, 81.0)], 1, 1.0, None, False, '')])
+def test_an_alarm_in_the_outage_finds_it_and_others_are_false(
+        alarms: List[Span], false: int, standing_s: float, latency_s: Optional[float], stood: bool,
+        level: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    normal, outage, healthy = rows_of(alarms, monkeypatch)
+    assert (normal.watched, normal.alarms) == (3, false)
+    assert normal.hours * HOUR_S == pytest.approx(70.0)
+    assert normal.standing_hours * HOUR_S == pytest.approx(standing_s)
+    assert (outage.stood_before, outage.level) == (stood, level)
+    assert outage.latency_s == (latency_s and pytest.approx(latency_s))
+    assert outage.culprit == ('/a' if level else '')
+    assert (healthy.fault, healthy.alarms) == (NORMAL, len(alarms))
+    assert healthy.standing_hours * HOUR_S == pytest.approx(sum(end - begin
+                                                                for begin, end in alarms))
+
+
+def test_a_folder_without_the_recordings_is_told(tmp_path: Path) -> None:
+    output = tmp_path / 'out'
+    error = error_of(evaluate, ['recordings', '--data', str(tmp_path), '-o', str(output)])
+    assert str(tmp_path / 'wheeled_robot') in error and '--data' in error
+    assert not output.exists()
+
+
+def test_every_case_and_system_has_a_row(shared: Path, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.chdir(shared)
+    output = tmp_path / 'out'
+    assert evaluate.main(['recordings', '--data', 'data', '-o', str(output)]) == 0
+    rows = load(output / 'full' / 'recordings.csv', Row)
+    assert ([(row.subject.robot, row.subject.system) for row in rows if row.fault == NORMAL]
+            == [(case.name, system) for case in outages.CASES
+                for system in ('evidence', 'paper', 'frequency_learned')])
+    page = (output / 'research.md').read_text(encoding='utf-8')
+    assert page.count('\n| wheeled_robot') == 6 and page.count('\n| social_robot') == 9
+    assert str(shared) not in page and 'evaluate recordings --data data' in page
+    of_outages = {(row.subject.robot, row.subject.system): row for row in rows
+                  if row.fault == outages.OUTAGE}
+    found = of_outages['wheeled_robot, 13 February', 'evidence']
+    assert found.watched == 5 and found.latency_s is not None and found.level == 'ERROR'
+    assert of_outages['wheeled_robot, 13 February', 'frequency_learned'].watched == 0
+    assert of_outages['wheeled_robot, 17 January', 'evidence'].stood_before

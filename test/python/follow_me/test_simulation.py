@@ -11,9 +11,8 @@ from typing import Any, Dict, Iterator, List, Tuple
 
 import pytest
 import rosbag
-from simulated_runs import DURATION_S, LEFT_S, ONSET_NS, SCENARIO, Run, last, robot, run, times
+from simulated_runs import DURATION_S, LEFT_S, ONSET_NS, Run, last, robot, run, times
 
-from self_awareness.commands.simulate import main
 from self_awareness_follow_me import simulation
 from self_awareness_follow_me.simulation import START_S, InducedFault, events, simulate
 from self_awareness_follow_me.speed import sped_up
@@ -169,25 +168,6 @@ def test_failure_leaves_nothing_behind(tmp_path: Path) -> None:
 def test_arguments_out_of_range(arguments: Dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=message):
         events(seed=1, scenario=robot(), **arguments)
-
-
-@pytest.mark.parametrize('arguments, message', [
-    (['--fault', 'cc1@2'], 'beyond'),
-    (['--fault', 'cc1@x'], '--fault cc1@x'),
-    (['--fault', 'cc9'], 'choose one of cc1, cc2, rs, ac'),
-    (['--runs', '2'], 'need a folder'),
-    (['--runs', '0'], 'at least 1'),
-    (['--scenario', 'nowhere.yaml'], 'nowhere.yaml: cannot be read'),
-    ([], 'exists already'),
-])
-def test_program_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture,
-                                    arguments: List[str], message: str) -> None:
-    path = tmp_path / 'run.bag'
-    if not arguments:
-        path.write_text('precious', encoding='utf-8')
-    assert main(['-o', str(path), '--scenario', str(SCENARIO), '--duration', '2', *arguments]) == 1
-    assert message in capsys.readouterr().err
-    assert not path.exists() or path.read_text(encoding='utf-8') == 'precious'
 
 
 def test_ten_times_as_fast_it_sends_as_much_in_a_tenth_of_the_time() -> None:

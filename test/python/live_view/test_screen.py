@@ -5,6 +5,7 @@ import time
 from typing import Any, List, Sequence
 
 import pytest
+from conftest import error_of
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from told import of_component, stands, stranger
 
@@ -128,9 +129,8 @@ def test_who_is_selected_is_muted_after_yes_only_and_told_again(shown: Shown) ->
     assert shown.called == [('/player', 600.0), ('/player', 0.0)]
 
 
-def test_without_a_terminal_it_says_so(capsys: pytest.CaptureFixture[str]) -> None:
-    assert top.main([]) == 1
-    assert 'needs a terminal' in capsys.readouterr().err
+def test_without_a_terminal_it_says_so() -> None:
+    assert 'needs a terminal' in error_of(top, [])
 
 
 def test_all_keys_are_in_one_line(shown: Shown) -> None:

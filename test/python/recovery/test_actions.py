@@ -1,4 +1,4 @@
-"""What is done to nodes, with a made-up master and real processes."""
+"""What is done to nodes, with a made-up master and real processes, and which process a node is."""
 from __future__ import annotations
 
 import os
@@ -13,7 +13,7 @@ from launched import launched
 
 from self_awareness.recovery.actions import ActionError, Actions
 from self_awareness.recovery.node_calls import NodeCalls
-from self_awareness.recovery.node_process import process_of
+from self_awareness.recovery.node_process import NodeProcess, NotItsProcess, process_of
 from self_awareness.recovery.rules import Call, Step, Stop
 from self_awareness.recovery.xml_rpc import NoAnswer
 
@@ -246,3 +246,31 @@ def test_a_hold_comes_before_the_next_node(robot: Robot) -> None:
 def test_a_hold_comes_before_a_call() -> None:
     with pytest.raises(ActionError, match='not done to its end: held'):
         do(Actions(Robot(), [], GRACE_S, lambda: 'held'), Call('/reset'))
+
+
+OURSELVES = -2
+
+
+def test_a_node_ends_when_it_is_told_to_and_nobody_else_does(tmp_path: Path) -> None:
+    with launched(tmp_path, '__name:=player') as pid:
+        process = process_of('/robot/player', pid)
+        with_the_same_id = NodeProcess(pid, process.start - 1)
+        assert not with_the_same_id.runs()
+        assert with_the_same_id.end(0.3) == 'ended by SIGTERM', 'it has ended long ago'
+        assert not process.ends_within(0.3, lambda: None), 'it gets no signal'
+        assert process.pid == pid and process.runs()
+        assert process.end(20.0) == 'ended by SIGTERM'
+        assert not process.runs()
+
+
+@pytest.mark.parametrize('name', ['/player2', '/robot/play', '/slam'])
+def test_a_process_of_another_name_is_not_the_nodes(tmp_path: Path, name: str) -> None:
+    with launched(tmp_path, '__name:=player') as pid:
+        with pytest.raises(NotItsProcess, match='not started with its name'):
+            process_of(name, pid)
+
+
+@pytest.mark.parametrize('pid', [-1, 0, 1, 2 ** 30, OURSELVES])
+def test_what_is_no_process_of_a_node_is_refused(pid: int) -> None:
+    with pytest.raises(NotItsProcess, match='/player says that it is process'):
+        process_of('/player', os.getpid() if pid == OURSELVES else pid)

@@ -1,4 +1,4 @@
-"""The recovery as a node, without ROS: what it keeps, and that it survives what is unexpected."""
+"""The recovery as a node, without ROS: what it keeps, survives and says, and its exit codes."""
 from __future__ import annotations
 
 import time
@@ -10,9 +10,10 @@ from unittest.mock import MagicMock
 import pytest
 import rospy
 
-from self_awareness.recovery import history
+from self_awareness.commands import recovery
+from self_awareness.recovery import history, words
 from self_awareness.recovery.history import Action, History, Hold
-from self_awareness.recovery.ladder import Fault, Order
+from self_awareness.recovery.ladder import Climb, Fault, Order
 from self_awareness.recovery.node import Recovery
 from self_awareness.recovery.rules import Rule, Rules, Stop
 
@@ -151,3 +152,81 @@ def test_a_look_that_fails_unexpectedly_is_followed_by_another(
     monkeypatch.setattr(rospy, 'is_shutdown', lambda: len(looks) == 2)
     recovery._look()
     assert len(looks) == 2
+
+
+RULES = Path(__file__).resolve().parents[3] / 'config' / 'recovery.yaml'
+
+
+@pytest.fixture(autouse=True)
+def without_ros(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rospy, 'init_node', lambda name: None)
+    monkeypatch.setattr(rospy, 'get_name', lambda: '/recovery')
+    monkeypatch.setattr(recovery.ros_node, 'limit_goodbye', lambda: None)
+    monkeypatch.setattr(recovery, 'Recovery', MagicMock())
+
+
+def test_rules_that_it_cannot_use_are_refused(tmp_path: Path) -> None:
+    assert recovery.main([str(RULES)]) == 0
+    assert recovery.main([str(tmp_path / 'none.yaml')]) == 1
+    (tmp_path / 'r.yaml').write_text('rules: []')
+    assert recovery.main([str(tmp_path / 'r.yaml')]) == 1
+    assert recovery.main([]) == 2
+
+
+@pytest.mark.parametrize('error', [OSError('no master'), ValueError('odd'), RuntimeError('odd'),
+                                   rospy.ROSException('odd'), MemoryError()])
+@pytest.mark.parametrize('where', ['begin', 'run'])
+def test_what_may_go_well_the_next_time_is_not(error: Exception, where: str,
+                                               monkeypatch: pytest.MonkeyPatch,
+                                               capsys: pytest.CaptureFixture[str]) -> None:
+    failing = MagicMock(side_effect=error)
+    if where == 'begin':
+        monkeypatch.setattr(rospy, 'init_node', failing)
+    else:
+        monkeypatch.setattr(recovery, 'Recovery', failing)
+    assert recovery.main([str(RULES)]) not in (0, 1, 2)
+    assert type(error).__name__ in capsys.readouterr().err
+
+
+NOW = 100.0
+TWO_STEPS = Rule('/player', ('silent',), (Stop(('/player',)), Stop(('/player', '/slam'))))
+DONE = Action(7, '/player', 'silent', 1, 2, 'stop /player', 1_600_000_000_000_000_000, False, True,
+              True, '/player ended by SIGKILL')
+DOING = Action(7, '/player', 'silent', 2, 2, 'stop /player, /slam', 1_600_000_020_000_000_000,
+               False)
+WAITING, GAVE_UP = Climb(TWO_STEPS, NOW + 12.4, 1), Climb(TWO_STEPS, NOW, 3, gave_up='3 actions')
+DOES = 'stop /player, /slam (step 2 of 2), since /player: silent'
+
+
+@pytest.mark.parametrize('climbs, actions, blind, held, level, told', [
+    ([], [DONE], '', '', words.OK, 'watches 3 components; 1 actions so far'),
+    ([WAITING], [DONE], '', '', words.WARN,
+     '/player is to be mended by step 2 of 2 in 12 s, if it does not recover'),
+    ([Climb(TWO_STEPS, NOW, 1)], [DONE], '', '', words.WARN,
+     '/player is to be mended by step 2 of 2 as soon as it fails so again'),
+    ([WAITING], [DONE, DOING], '', '', words.WARN, DOES),
+    ([GAVE_UP], [DONE], '', '', words.ERROR, 'gave up on /player: 3 actions'),
+    ([GAVE_UP], [], 'not heard', '', words.ERROR,
+     'gave up on /player: 3 actions; does nothing: not heard'),
+    ([], [], 'not heard', '', words.WARN, 'does nothing: not heard'),
+    ([], [], '', 'until noon, by /me', words.WARN, 'does nothing until noon, by /me'),
+    ([], [DONE, DOING], '', 'until noon', words.WARN, f'{DOES}; does nothing more until noon'),
+    ([], [DONE, DOING], 'not heard', 'until noon', words.WARN,
+     f'{DOES}; does nothing more until noon; does nothing: not heard'),
+    ([], [], 'not heard', 'until noon', words.WARN,
+     'does nothing until noon; does nothing: not heard')])
+def test_what_is_and_will_be_done_is_told_or_why_nothing_is(
+        climbs: List[Climb], actions: List[Action], blind: str, held: str, level: int,
+        told: str) -> None:
+    assert words.status(NOW, 3, climbs, actions, blind, held) == (level, told)
+
+
+def test_the_last_actions_are_values() -> None:
+    shown = words.values([DONE] * 11 + [DOING], ['/x was not started by roslaunch'], True)
+    assert shown['dry run'] == 'true'
+    assert shown['cannot stop 1'] == '/x was not started by roslaunch'
+    assert shown['action 1'] == (
+        '2020-09-13 12:27:00 UTC, stop /player, /slam (step 2 of 2), since /player: silent')
+    assert shown['action 2'] == ('2020-09-13 12:26:40 UTC, stop /player (step 1 of 2), since '
+                                 '/player: silent: done: /player ended by SIGKILL')
+    assert 'action 11' not in shown

@@ -5,19 +5,15 @@ import json
 import re
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Callable, List, Optional, Sequence
 
-import pytest
-import rosbag
-from conftest import Message, jittery_robot, put
-from judged_recordings import judged, with_graph, without_laser
-from std_msgs.msg import String
+from judged_recordings import without_laser
 
 from self_awareness.commands import convert, score
 from self_awareness.reporting.report.headline import headline
 from self_awareness.reporting.report.incidents import Incident, incidents
 from self_awareness.reporting.report.intervals import (ALARM, SUSPICION, Interval, NamedSuspect,
-                                                       Silence, intervals)
+                                                       Silence)
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 
@@ -122,14 +118,6 @@ def test_only_who_did_not_come_back_has_stopped() -> None:
         '16.0 s.')
 
 
-def test_what_is_no_silence_has_a_begin_and_an_end() -> None:
-    slow = suspect('/a', 'sends too seldom', kind='slow')
-    assert headline(interval(31.6, 45.0, [slow]), [], 1) == (
-        '/a (/t) sends too seldom from 31.6 s to 45.0 s.')
-    assert headline(interval(31.6, 60.0, [slow], cleared=False), ['/b'], 3) == (
-        '/a and /b send too seldom 3 times, the longest from 31.6 s to the end of the recording.')
-
-
 def test_where_nobody_is_to_blame_the_kind_of_the_verdict_is_told() -> None:
     """The first suspect of a busy machine is not its cause."""
     busy = interval(3.0, 9.0, kind='busy machine',
@@ -172,52 +160,3 @@ def test_a_computer_that_fell_silent_is_the_finding(evidence_model: str, tmp_pat
     assert score.main([bag, '--model', evidence_model, '--json', str(values)]) == 0
     recording, = json.loads(values.read_text())['recordings']
     assert 'base' not in recording['incidents'][0]['headline'], 'a bag does not say it'
-
-
-def pauses(start: float) -> List[Message]:
-    """A laser that pauses for 1.5 s twice, and for 8 s."""
-    gaps = [(12.0, 13.5), (30.0, 38.0), (60.0, 61.5)]
-    return [m for m in jittery_robot(start, 90.0, 3)
-            if not (m[1] == '/laser' and any(a <= m[0] - start < b for a, b in gaps))]
-
-
-def test_a_recording_of_several_pauses(evidence_model: str, make_bag: Callable[..., str],
-                                       tmp_path: Path) -> None:
-    bag, values = make_bag('pauses.bag', pauses(3000.0)), tmp_path / 'v.json'
-    model = with_graph(evidence_model, tmp_path / 'm')
-    assert score.main([bag, '--model', model, '--json', str(values)]) == 0
-    recording, = json.loads(values.read_text())['recordings']
-    incident = recording['incidents'][0]
-    assert re.fullmatch(r'/laser \(/scan\) fell silent 3 times, the longest at (29.9|30.0) s, and '
-                        r'came back at 38.0 s\.', incident['headline'])
-    assert incident['cause'] == '/laser' and len(incident['alarms']) >= 3
-    assert set(incident['alarms']) <= {alarm['id'] for alarm in recording['alarms']}
-    laser, = [each for each in incident['silent'] if each['component'] == '/laser']
-    assert (laser['from_s'], laser['back_s']) == pytest.approx((30.0, 38.0), abs=0.1)
-
-
-def write_senders(path: Path, messages: List[Message]) -> str:
-    """Write a bag in which several nodes publish on a topic, as Python's rosbag does not."""
-    connections: Dict[Tuple[str, str], Any] = {}
-    with rosbag.Bag(str(path), 'w') as bag:
-        for stamp, source, topic in messages:
-            bag._topic_connections.pop(topic, None)
-            if (source, topic) in connections:
-                bag._topic_connections[topic] = connections[source, topic]
-            put(bag, source, topic, String('x'), stamp)
-            connections[source, topic] = bag._topic_connections[topic]
-    return str(path)
-
-
-def test_a_flood_of_strangers_does_not_hide_who_died(evidence_model: str,
-                                                     tmp_path: Path) -> None:
-    flood = [(3010.0 + 0.02 * i + 0.001 * node, f'/flood{node}', '/charge')
-             for i in range(1000) for node in range(4)]
-    bag = write_senders(tmp_path / 'flood.bag', sorted(
-        [*flood, *(m for m in jittery_robot(3000.0, 30.0, 3)
-                   if not (m[0] >= 3012.0 and m[1] in ('/laser', '/slam')))]))
-    of = judged(with_graph(evidence_model, tmp_path / 'm'), bag)
-    alarm = next(each for each in incidents(of, intervals(of), 'x') if each.level == ALARM)
-    assert alarm.cause == '/laser'
-    assert alarm.headline == ('/laser (/scan) stopped sending at 12.0 s, 18.0 s before the '
-                              'recording ended.')

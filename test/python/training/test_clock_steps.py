@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import jittery_robot, learned, trained, write_bag
 
-from self_awareness import EncodingRules, TrainedModel, load, read_events
+from self_awareness import TrainedModel, load
 from self_awareness.commands import calibrate, convert, score
 
 STEP_S = 20.0
@@ -91,16 +91,6 @@ def test_a_step_of_any_size_is_told_and_no_fault(three: str, tmp_path: Path, by_
     recording, = json.loads((tmp_path / 'j').read_text())['recordings']
     assert recording['clock_steps'][0]['by_s'] == pytest.approx(by_s, abs=0.1)
     assert f'set {way}' in page.read_text()
-
-
-def test_a_bag_in_no_order_of_time_is_read_by_time(folder: Path) -> None:
-    messages = robot(9000.0, 9)
-    by_topic = sorted(messages, key=lambda message: message[2])
-    bags = [write_bag(folder / f'{name}.bag', each)
-            for name, each in (('by_time', messages), ('by_topic', by_topic))]
-    one, other = (read_events(bag, EncodingRules.defaults()) for bag in bags)
-    assert other.summary.set_back == []
-    assert np.array_equal(one.stamps, other.stamps)
 
 
 def test_the_log_of_a_bag_is_cut_like_the_bag(folder: Path,

@@ -138,11 +138,11 @@ def test_a_worker_is_killed_and_the_result_is_right(cluster: Cluster, bags: List
     assert learned(model, calibrations=True) == learned(expected, calibrations=True)
 
 
-def test_workers_without_the_package_are_told(cluster: Cluster, bags: List[str], tmp_path: Path,
-                                              capsys) -> None:
+def test_workers_without_the_package_are_told(cluster: Cluster, bags: List[str],
+                                              tmp_path: Path) -> None:
     cluster.add_worker('one', path='')
     arguments = [*bags, '-o', str(tmp_path / 'm'), '--scheduler', cluster.address]
-    error = error_of(train, arguments, capsys)
+    error = error_of(train, arguments)
     assert error.startswith(f'train: error: --scheduler {cluster.address}: its workers lack')
     assert "No module named 'self_awareness'" in error and 'setup.bash' in error
 
@@ -160,15 +160,14 @@ def test_a_scheduler_that_dies_is_told(cluster: Cluster, bags: List[str], tmp_pa
     assert not (tmp_path / 'm').exists()
 
 
-def test_nobody_at_the_address(bags: List[str], tmp_path: Path, monkeypatch, capsys) -> None:
+def test_nobody_at_the_address(bags: List[str], tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setattr('self_awareness.workers._CONNECT_S', 1.0)
     for address in ('127.0.0.1:1', 'tcp://127.0.0.1:1', 'nonsense://x', 'none'):
-        error = error_of(train, [*bags, '-o', str(tmp_path / 'm'), '--scheduler', address], capsys)
+        error = error_of(train, [*bags, '-o', str(tmp_path / 'm'), '--scheduler', address])
         assert error.startswith(f'train: error: --scheduler {address}: no scheduler'), error
 
 
-def test_without_dask_its_package_is_named(bags: List[str], tmp_path: Path, monkeypatch,
-                                           capsys) -> None:
+def test_without_dask_its_package_is_named(bags: List[str], tmp_path: Path, monkeypatch) -> None:
     monkeypatch.setitem(sys.modules, 'distributed', None)
     assert 'python3-distributed' in error_of(
-        train, [*bags, '-o', str(tmp_path / 'm'), '--scheduler', '127.0.0.1:1'], capsys)
+        train, [*bags, '-o', str(tmp_path / 'm'), '--scheduler', '127.0.0.1:1'])

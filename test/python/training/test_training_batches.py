@@ -1,19 +1,22 @@
-"""Training on batches of neighbouring bags: their sums are what the bags one by one add up to."""
+"""Training on batches of bags, and on top of a model: as if all were counted one by one."""
 from __future__ import annotations
 
 import os
 import random
+from collections import Counter
 from pathlib import Path
-from typing import Any, Callable, List, Optional
+from typing import Any, Callable, List, Optional, Tuple
 
 import pytest
-from conftest import jittery_robot, learned, trained, write_bag
+from conftest import error_of, jittery_robot, learned, train_tuned, trained, write_bag
 
-from self_awareness import EncodingRules, EvidenceModel, Learner, TrainedModel, read_events
+from self_awareness import EncodingRules, EvidenceModel, Learner, TrainedModel, Tuning, read_events
+from self_awareness.commands import train
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
+from self_awareness.training.robot_graph import RobotGraph
 from self_awareness.workers import InProcess, Processes, Workers
 
 BAGS = 9
@@ -176,3 +179,78 @@ def test_a_batch_that_takes_the_memory_is_named(bags: List[str], monkeypatch) ->
     monkeypatch.setattr(many_bags, '_count', lambda *_: os.kill(os.getpid(), 9))
     error = failure(bags, Processes(2))
     assert error.startswith(f'one of {bags[0]} to {bags[3]}: a process that worked on it')
+
+
+LENGTH_S = 40.0
+
+
+@pytest.fixture(scope='module', name='five')
+def _five(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
+    folder = tmp_path_factory.mktemp('many')
+    return [write_bag(folder / f'{index}.bag',
+                      jittery_robot(10000.0 * (index + 1), LENGTH_S, index)) for index in range(5)]
+
+
+def test_more_is_added_to_a_model(five: List[str], tmp_path: Path) -> None:
+    whole = trained(five, tmp_path / 'whole', '--bin', '0.02', '--window', '0.2', '--horizon', '5')
+    model = tmp_path / 'm'
+    trained(five[:3], model, '--bin', '0.02', '--window', '0.2', '--horizon', '5')
+    continued = trained(five[3:], model, '--add-to', str(model))
+    assert learned(continued) == learned(whole)  # the halves go on in turn
+    found = continued.calibration
+    assert [each.bag for each in found.recordings] == ['3.bag', '4.bag']
+    assert found.windows < whole.calibration.windows
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith('m')] == ['m']
+
+
+def test_limits_of_a_model_do_not_outlast_what_is_added(five: List[str], robot_bags,
+                                                        evidence_model: str,
+                                                        tmp_path: Path) -> None:
+    model = trained([robot_bags[0]], tmp_path / 'm', '--add-to', evidence_model)
+    assert model.calibration is None  # 30 s are too little for others
+    assert len(model.recordings) == 2
+
+
+def test_the_graph_is_kept_unless_another_is_asked_for(five: List[str], tmp_path: Path,
+                                                       monkeypatch) -> None:
+    output = tmp_path / 'm'
+    model = trained(five[:1], output)
+    model.graph = {('/laser', '/scan', '/slam')}
+    model.save(str(output))
+    assert trained(five[1:2], output, '--add-to', str(output)).graph == model.graph
+    monkeypatch.setattr('self_awareness.training.live_graph.fetch',
+                        lambda: RobotGraph({'/x': {'/a'}}, {'/x': {'/b'}}))
+    again = trained(five[2:3], output, '--add-to', str(output), '--graph')
+    assert again.graph == {('/a', '/x', '/b')}
+
+
+def test_what_is_in_the_model_already_is_not_added(five: List[str], tmp_path: Path) -> None:
+    model = tmp_path / 'm'
+    trained(five[:2], model, '--end', '20')
+    before = model.read_bytes()
+    error = error_of(train, [five[1], '--add-to', str(model), '-o', str(model)])
+    assert five[1] in error and '1.bag, which the model was trained on' in error
+    assert model.read_bytes() == before
+    assert len(trained([five[1]], model, '--add-to', str(model), '--start', '21').recordings) == 3
+
+
+def test_the_tuning_of_a_model_stays_when_more_is_added(five: List[str], tmp_path: Path) -> None:
+    def most_watched(model: TrainedModel) -> int:
+        return max(Counter(track.to_id for track in EvidenceModel(model).tracks
+                           if track.name == 'pairs').values())
+
+    base = train_tuned(five[:2], tmp_path / 'base', predecessors=1)
+    model = trained(five[2:4], tmp_path / 'm', '--add-to', base, '--jobs', '2')
+    assert model.tuning == TrainedModel.load(base).tuning != Tuning()
+    assert most_watched(model) == 1 < most_watched(trained(five[:4], tmp_path / 'default'))
+
+
+@pytest.mark.parametrize('option', [('--bin', '0.01'), ('--window', '0.1'), ('--horizon', '1'),
+                                    ('--encoding', 'e.yaml'), ('--detector', 'paper'),
+                                    ('--rename', '/a', '/b')])
+def test_how_a_model_counts_is_not_changed(option: Tuple[str, ...], model_file: str,
+                                           five: List[str], tmp_path: Path) -> None:
+    arguments = [five[0], '--add-to', model_file, *option, '-o', str(tmp_path / 'm')]
+    error = error_of(train, arguments)
+    assert f'{option[0]}: leave it out' in error and model_file in error
+    assert not (tmp_path / 'm').exists()

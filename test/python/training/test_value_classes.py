@@ -8,7 +8,7 @@ from typing import List
 import numpy as np
 import pytest
 import rosbag
-from conftest import error_of, put, trained
+from conftest import error_of, printed_by, put, trained
 from std_msgs.msg import Float32
 
 from self_awareness import encoding_file, read_events
@@ -48,7 +48,7 @@ def _bags(tmp_path: Path) -> List[str]:
 
 
 def test_the_training_learns_them_and_all_use_them(bags: List[str], encoding: str,
-                                                   tmp_path: Path, capsys) -> None:
+                                                   tmp_path: Path) -> None:
     model = str(tmp_path / 'm')
     learned = trained(bags[:2], Path(model), '--encoding', encoding, '--jobs', '2')
     (number, bounds), = learned.encoding.classes.values()
@@ -59,11 +59,8 @@ def test_the_training_learns_them_and_all_use_them(bags: List[str], encoding: st
     shares = [learned.event_count(index) for index in range(4)]
     assert max(shares) < 1.3 * min(shares), 'as many in each'
     assert calibrate.main(['--model', model, '--normal', bags[2], '-o', model]) == 0
-    capsys.readouterr()
-    assert score.main(['--model', model, bags[2]]) == 0
-    assert 'never seen' not in capsys.readouterr().out
-    assert info.main([model, '--details']) == 0
-    assert f'{bounds[0]:g}' in capsys.readouterr().out
+    assert 'never seen' not in printed_by(score, ['--model', model, bags[2]])
+    assert f'{bounds[0]:g}' in printed_by(info, [model, '--details'])
     # More bags are put into the same classes.
     assert trained(bags[2:], Path(model), '--add-to', model).encoding == learned.encoding
 
@@ -103,27 +100,27 @@ def test_a_bound_has_the_digits_that_it_takes(tmp_path: Path, encoding: str) -> 
     assert len(set(read_events(bag, rules).ids)) == 2
 
 
-def test_models_of_other_classes_are_not_merged(bags: List[str], encoding: str, tmp_path: Path,
-                                                capsys) -> None:
-    models = [str(tmp_path / name) for name in ('a', 'b')]
-    for bag, model in zip(bags, models):
-        trained([bag], Path(model), '--encoding', encoding)
-    assert 'classes' in error_of(merge, [*models, '-o', str(tmp_path / 'both')], capsys)
-
-
 @pytest.mark.parametrize('field, values, what', [
     ('data', [1.0] * 50, 'no two values'), ('other', [1.0, 2.0], 'has no field')])
-def test_what_has_no_classes_is_named(tmp_path: Path, field: str, values: List[float], what: str,
-                                      capsys) -> None:
+def test_what_has_no_classes_is_named(tmp_path: Path, field: str, values: List[float],
+                                      what: str) -> None:
     file = tmp_path / 'e.yaml'
     file.write_text(ENCODING.replace('data', field))
     bag = write(tmp_path / '1.bag', 1000.0, values)
-    said = error_of(train, [bag, '--encoding', str(file), '-o', str(tmp_path / 'm')], capsys)
+    said = error_of(train, [bag, '--encoding', str(file), '-o', str(tmp_path / 'm')])
     assert what in said and f'std_msgs/Float32: {field}' in said
 
 
-def test_event_logs_hold_no_values(bags: List[str], encoding: str, tmp_path: Path, capsys) -> None:
+def test_event_logs_hold_no_values(bags: List[str], encoding: str, tmp_path: Path) -> None:
     log, options = str(tmp_path / 'log.bag'), ['--encoding', encoding, '-o']
-    assert 'are not learned yet' in error_of(convert, [bags[0], *options, log], capsys)
+    assert 'are not learned yet' in error_of(convert, [bags[0], *options, log])
     assert convert.main([bags[0], '-o', log]) == 0
-    assert 'holds no values' in error_of(train, [log, *options, str(tmp_path / 'm')], capsys)
+    assert 'holds no values' in error_of(train, [log, *options, str(tmp_path / 'm')])
+
+
+def test_models_of_other_classes_are_not_merged(bags: List[str], encoding: str,
+                                                tmp_path: Path) -> None:
+    models = [str(tmp_path / name) for name in ('a', 'b')]
+    for bag, model in zip(bags, models):
+        trained([bag], Path(model), '--encoding', encoding)
+    assert 'classes' in error_of(merge, [*models, '-o', str(tmp_path / 'both')])
