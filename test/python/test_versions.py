@@ -86,13 +86,13 @@ def test_a_model_says_for_ever_what_it_said(folder: Path) -> None:
 
 
 @every_release
-def test_info_prints_the_versions(folder: Path, capsys) -> None:
+def test_info_prints_the_versions(folder: Path) -> None:
     for name, number in FORMATS.items():
-        version = json.loads(printed(capsys, folder / name, '--json'))['version']
+        version = json.loads(printed(folder / name, '--json'))['version']
         assert version['oldest_reader'] <= version['format'] <= number
         assert (version['method'] is None) == (name == 'dead.events.bag')
         text = f'written by   self_awareness {version["package"]}, format {version["format"]}'
-        assert text in printed(capsys, folder / name, '--details')
+        assert text in printed(folder / name, '--details')
 
 
 @every_release
@@ -147,9 +147,9 @@ def test_a_graph_of_a_newer_format_is_read_if_it_says_so(tmp_path: Path) -> None
             RobotGraph.load(str(path))
 
 
-def test_an_event_log_of_before_versions_is_read(capsys) -> None:
+def test_an_event_log_of_before_versions_is_read() -> None:
     path = DATA / 'former.events.bag'
-    assert 'format 1' in printed(capsys, path, '--details')
-    summary = json.loads(printed(capsys, path, '--json'))
+    assert 'format 1' in printed(path, '--details')
+    summary = json.loads(printed(path, '--json'))
     counts = {each['source']: each['count'] for each in summary['event_types']}
     assert (summary['events'], counts['/laser']) == (958, 200)  # it died after 20 s, of 10 Hz
