@@ -1,7 +1,5 @@
 #include "monitor/accept_calls.h"
 
-#include <gtest/gtest.h>
-
 #include <cstdint>
 #include <map>
 

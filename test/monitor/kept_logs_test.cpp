@@ -1,7 +1,5 @@
 #include "monitor/kept_logs.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 
 #include "../await.h"

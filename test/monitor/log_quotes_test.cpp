@@ -1,7 +1,6 @@
 #include "monitor/log_quotes.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
-#include <gtest/gtest.h>
 #include <rosgraph_msgs/Log.h>
 
 #include "../problem.h"

@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 #include <std_msgs/String.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "../core/evidence/recordings.h"
 #include "../ros/serialized.h"
 #include "../times.h"
-#include "self_awareness/core/evidence/count/trainer.h"
 
 namespace self_awareness {
 namespace {

@@ -6,7 +6,6 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
-#include <string>
 
 #include "self_awareness/core/stream/event.h"
 #include "serialized.h"

@@ -2,10 +2,7 @@
 
 #include "ros/message_upgrade.h"
 
-#include <gtest/gtest.h>
-
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "../problem.h"

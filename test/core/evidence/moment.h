@@ -1,9 +1,6 @@
 #pragma once
 
 #include <map>
-#include <memory>
-#include <string>
-#include <vector>
 
 #include "core/evidence/explain/unusual.h"
 #include "core/evidence/watch/upstream.h"

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
-#include <vector>
-
 #include "judged.h"
 
 namespace self_awareness::core::evidence {

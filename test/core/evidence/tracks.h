@@ -3,11 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstddef>
 #include <limits>
 #include <memory>
-#include <string>
-#include <vector>
 
 #include "core/evidence/explain/excess.h"
 #include "recordings.h"

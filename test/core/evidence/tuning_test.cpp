@@ -2,19 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <set>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "attributed.h"
-#include "recordings.h"
 #include "self_awareness/core/evidence/channel/model.h"
-#include "self_awareness/core/evidence/channel/watched.h"
 #include "self_awareness/core/evidence/limits/limits.h"
 
 namespace self_awareness::core::evidence {

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <cstring>
 #include <initializer_list>
-#include <string>
 #include <utility>
 #include <vector>
 

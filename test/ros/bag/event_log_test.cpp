@@ -4,10 +4,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include <cstdint>
 #include <functional>
-#include <set>
-#include <string>
 #include <utility>
 #include <vector>
 

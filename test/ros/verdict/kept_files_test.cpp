@@ -1,7 +1,5 @@
 #include "ros/verdict/kept_files.h"
 
-#include <gtest/gtest.h>
-
 #include <functional>
 
 #include "../../in_folder.h"

@@ -1,6 +1,5 @@
 #include "ros/verdict/status_round.h"
 
-#include <gtest/gtest.h>
 #include <ros/serialization.h>
 
 #include <algorithm>

@@ -1,7 +1,5 @@
 #include "core/evidence/channel/owed.h"
 
-#include <gtest/gtest.h>
-
 #include "channel_case.h"
 
 namespace self_awareness::core::evidence {

@@ -2,11 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
 #include <limits>
-#include <random>
 #include <stdexcept>
-#include <vector>
 
 #include "../recordings.h"
 #include "core/evidence/count/log_bins.h"

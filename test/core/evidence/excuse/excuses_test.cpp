@@ -1,17 +1,9 @@
 #include "core/evidence/excuse/excuses.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <map>
-#include <memory>
 #include <numeric>
-#include <random>
 #include <set>
-#include <string>
 #include <tuple>
 #include <utility>
-#include <vector>
 
 #include "../../verdict/accepted.h"
 #include "../moment.h"

@@ -1,9 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "../judged.h"
 #include "self_awareness/core/verdict/alarm.h"
 

@@ -1,13 +1,6 @@
 #include "self_awareness/core/evidence/limits/limits.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
-#include <memory>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "../tracks.h"
 #include "self_awareness/core/evidence/limits/cross_fit.h"

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
 #include "../../verdict/accepted.h"
 #include "../recordings.h"
 

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
-
 #include "../recordings.h"
 #include "core/evidence/count/log_bins.h"
 

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdint>
-#include <vector>
-
 #include "../recordings.h"
 #include "core/evidence/watch/starvation.h"
 #include "self_awareness/core/evidence/watch/machine_stalls.h"
