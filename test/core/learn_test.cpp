@@ -2,11 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "evidence/recordings.h"
+#include "self_awareness/core/evidence/channel/watched.h"
 #include "self_awareness/core/evidence/limits/cross_fit.h"
 #include "self_awareness/core/stream/mode.h"
 

@@ -1,5 +1,7 @@
 #include "monitor/accept_calls.h"
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
 #include <map>
 

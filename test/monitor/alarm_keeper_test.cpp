@@ -1,5 +1,7 @@
 #include "monitor/alarm_keeper.h"
 
+#include <gtest/gtest.h>
+
 #include "../in_folder.h"
 #include "ros/verdict/kept_files.h"
 

@@ -1,11 +1,14 @@
 #include "monitor/flight_recorder.h"
 
+#include <gtest/gtest.h>
 #include <sys/types.h>
 #include <sys/wait.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <random>
+#include <thread>
 
 #include "../await.h"
 #include "../in_folder.h"

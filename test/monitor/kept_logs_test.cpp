@@ -1,5 +1,7 @@
 #include "monitor/kept_logs.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 
 #include "../await.h"

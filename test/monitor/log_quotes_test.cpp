@@ -1,6 +1,7 @@
 #include "monitor/log_quotes.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
+#include <gtest/gtest.h>
 #include <rosgraph_msgs/Log.h>
 
 #include "../problem.h"

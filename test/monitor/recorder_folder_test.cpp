@@ -1,6 +1,10 @@
 #include "monitor/recorder_folder.h"
 
+#include <gtest/gtest.h>
+
 #include <cstdlib>
+#include <set>
+#include <stdexcept>
 
 #include "../in_folder.h"
 #include "../problem.h"

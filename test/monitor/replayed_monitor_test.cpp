@@ -4,6 +4,9 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "../in_folder.h"
 #include "../ros/serialized.h"

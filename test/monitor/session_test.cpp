@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 #include <std_msgs/String.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "../core/evidence/recordings.h"
 #include "../ros/serialized.h"
 #include "../times.h"
+#include "self_awareness/core/evidence/count/trainer.h"
 
 namespace self_awareness {
 namespace {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "../times.h"
+#include "self_awareness/core/stream/event.h"
 
 namespace self_awareness {
 namespace {

@@ -6,6 +6,7 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
+#include <string>
 
 #include "self_awareness/core/stream/event.h"
 #include "serialized.h"

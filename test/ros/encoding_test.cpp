@@ -1,12 +1,14 @@
 #include "self_awareness/ros/encoding.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
+#include <gtest/gtest.h>
 #include <std_msgs/String.h>
 #include <visualization_msgs/Marker.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <stdexcept>
 #include <utility>
 
 #include "../problem.h"

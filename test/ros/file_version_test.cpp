@@ -2,11 +2,18 @@
 
 #include "self_awareness/ros/file_version.h"
 
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 #include <std_msgs/String.h>
 #include <topic_tools/shape_shifter.h>
 
 #include <cstring>
+#include <functional>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "model/model_file_case.h"
 #include "ros/bag/bag_index.h"
@@ -15,6 +22,7 @@
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
+#include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::ros1 {
 namespace {

@@ -2,9 +2,13 @@
 
 #include "ros/message_field.h"
 
+#include <gtest/gtest.h>
 #include <rosgraph_msgs/Log.h>
 #include <sensor_msgs/PointCloud2.h>
 #include <visualization_msgs/Marker.h>
+
+#include <stdexcept>
+#include <string>
 
 #include "../problem.h"
 #include "serialized.h"

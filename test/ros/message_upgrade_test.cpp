@@ -2,7 +2,10 @@
 
 #include "ros/message_upgrade.h"
 
+#include <gtest/gtest.h>
+
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "../problem.h"

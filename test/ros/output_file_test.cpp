@@ -3,11 +3,15 @@
 #include "self_awareness/ros/output_file.h"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <boost/filesystem.hpp>
 #include <csignal>
+#include <set>
+#include <string>
 
 #include "../in_folder.h"
 #include "../problem.h"

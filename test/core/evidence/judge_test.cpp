@@ -1,7 +1,14 @@
 #include "self_awareness/core/evidence/judge.h"
 
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
 #include <set>
 #include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "../verdict/accepted.h"
 #include "judged.h"

@@ -1,7 +1,12 @@
 #include "core/evidence/lanes.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <stdexcept>
+#include <vector>
 
 #include "self_awareness/core/verdict/detector.h"
 #include "tracks.h"

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <map>
+#include <memory>
+#include <string>
+#include <vector>
 
 #include "core/evidence/explain/unusual.h"
 #include "core/evidence/watch/upstream.h"

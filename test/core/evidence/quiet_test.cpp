@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+#include <vector>
+
 #include "judged.h"
 
 namespace self_awareness::core::evidence {

@@ -1,12 +1,21 @@
 #include "self_awareness/core/evidence/tuning.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "../../problem.h"
 #include "attributed.h"
+#include "recordings.h"
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/channel/watched.h"
 #include "self_awareness/core/evidence/limits/limits.h"
 
 namespace self_awareness::core::evidence {

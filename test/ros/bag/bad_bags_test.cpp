@@ -8,6 +8,12 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <boost/filesystem.hpp>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "../../in_folder.h"
 #include "../../problem.h"

@@ -2,12 +2,20 @@
 
 #include "self_awareness/ros/bag/bag_reader.h"
 
+#include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <std_msgs/String.h>
 
 #include <algorithm>
+#include <boost/filesystem.hpp>
 #include <cmath>
+#include <fstream>
 #include <random>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "../../in_folder.h"
 #include "../../problem.h"

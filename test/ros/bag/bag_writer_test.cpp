@@ -2,14 +2,17 @@
 
 #include "self_awareness/ros/bag/bag_writer.h"
 
+#include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <std_msgs/String.h>
 #include <std_msgs/UInt32.h>
 #include <sys/resource.h>
 
+#include <boost/filesystem.hpp>
 #include <csignal>
 #include <random>
+#include <string>
 
 #include "../../in_folder.h"
 #include "../../problem.h"

@@ -4,7 +4,10 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include <cstdint>
 #include <functional>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 

@@ -3,11 +3,15 @@
 
 #include "ros/bag/recording_files.h"
 
+#include <gtest/gtest.h>
 #include <rosbag/bag.h>
 #include <std_msgs/Header.h>
 
+#include <boost/filesystem.hpp>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "../../in_folder.h"
 #include "../../problem.h"

@@ -10,12 +10,15 @@
 #include <std_msgs/String.h>
 
 #include <array>
+#include <boost/make_shared.hpp>
 #include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "../serialized.h"
 #include "self_awareness/core/stream/vocabulary.h"

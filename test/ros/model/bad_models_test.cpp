@@ -1,8 +1,16 @@
 // Models that were damaged, or made to do harm: each is refused in words that name the file.
 
 #include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 
+#include <boost/filesystem.hpp>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "../../times.h"
 #include "../bag/bag_bytes.h"

@@ -2,11 +2,19 @@
 
 #include "self_awareness/ros/model/model_file.h"
 
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
 #include <std_msgs/String.h>
 
+#include <boost/filesystem.hpp>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <set>
+#include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "model_file_case.h"
 #include "ros/model/model_fields.h"

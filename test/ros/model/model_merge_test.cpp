@@ -1,8 +1,12 @@
 #include "self_awareness/ros/model/model_merge.h"
 
+#include <gtest/gtest.h>
+
 #include <functional>
 #include <map>
 #include <set>
+#include <stdexcept>
+#include <string>
 
 #include "../../problem.h"
 #include "core/paper/delay_trainer.h"

@@ -1,5 +1,7 @@
 #include "ros/verdict/kept_files.h"
 
+#include <gtest/gtest.h>
+
 #include <functional>
 
 #include "../../in_folder.h"

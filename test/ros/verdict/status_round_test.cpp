@@ -1,5 +1,6 @@
 #include "ros/verdict/status_round.h"
 
+#include <gtest/gtest.h>
 #include <ros/serialization.h>
 
 #include <algorithm>

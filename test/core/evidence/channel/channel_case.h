@@ -1,7 +1,14 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "../tracks.h"
 #include "core/evidence/channel/scorer.h"

@@ -1,8 +1,17 @@
 #include "core/evidence/channel/company.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
 #include "../judged.h"
 #include "channel_case.h"
 #include "core/evidence/watch/relations.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core::evidence {

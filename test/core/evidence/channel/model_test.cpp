@@ -1,5 +1,8 @@
 #include "self_awareness/core/evidence/channel/model.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
 #include <stdexcept>
 
 #include "../tracks.h"

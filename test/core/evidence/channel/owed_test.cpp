@@ -1,5 +1,7 @@
 #include "core/evidence/channel/owed.h"
 
+#include <gtest/gtest.h>
+
 #include "channel_case.h"
 
 namespace self_awareness::core::evidence {

@@ -1,5 +1,13 @@
 #include "core/evidence/channel/pace.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "channel_case.h"
 #include "self_awareness/core/evidence/limits/coverage.h"
 

@@ -1,7 +1,16 @@
 #include "core/evidence/channel/pairs.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
 #include "channel_case.h"
 #include "core/evidence/channel/delays.h"
+#include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
 namespace {

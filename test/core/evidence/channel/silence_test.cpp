@@ -1,5 +1,9 @@
 #include "core/evidence/channel/silence.h"
 
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "channel_case.h"

@@ -1,5 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
 #include "../judged.h"
 #include "self_awareness/core/verdict/alarm.h"
 

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <limits>
+#include <random>
 #include <stdexcept>
+#include <vector>
 
 #include "../recordings.h"
 #include "core/evidence/count/log_bins.h"

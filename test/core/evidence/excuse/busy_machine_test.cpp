@@ -1,5 +1,11 @@
 #include "core/evidence/excuse/busy_machine.h"
 
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "../moment.h"
 #include "core/evidence/excuse/excuses.h"
 

@@ -1,9 +1,17 @@
 #include "core/evidence/excuse/excuses.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
 #include <numeric>
+#include <random>
 #include <set>
+#include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "../../verdict/accepted.h"
 #include "../moment.h"

@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ctime>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "../../verdict/accepted.h"
 #include "../judged.h"

@@ -1,5 +1,9 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "../judged.h"
 #include "self_awareness/core/verdict/alarm.h"
 

@@ -1,5 +1,15 @@
 #include "core/evidence/explain/explanation.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "../judged.h"
 #include "../moment.h"
 #include "core/evidence/presence/strangers.h"

@@ -1,6 +1,10 @@
 #include "self_awareness/core/evidence/limits/coverage.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <stdexcept>
+#include <vector>
 
 #include "../tracks.h"
 

@@ -1,5 +1,14 @@
 #include "self_awareness/core/evidence/limits/limits.h"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
 #include "../../../problem.h"
 #include "../tracks.h"
 #include "self_awareness/core/evidence/limits/cross_fit.h"

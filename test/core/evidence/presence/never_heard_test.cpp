@@ -1,5 +1,12 @@
 #include "core/evidence/presence/never_heard.h"
 
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "../judged.h"
 #include "../tracks.h"
 #include "self_awareness/core/evidence/judge.h"

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "../recordings.h"
 #include "core/evidence/count/log_bins.h"
 

@@ -1,7 +1,12 @@
 #include "core/evidence/watch/silent_pairs.h"
 
-#include <map>
+#include <gtest/gtest.h>
 
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "../recordings.h"
 #include "../tracks.h"
 #include "core/evidence/watch/gain.h"
 #include "self_awareness/core/model.h"

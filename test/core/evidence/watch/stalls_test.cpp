@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <vector>
+
 #include "../recordings.h"
 #include "core/evidence/watch/starvation.h"
 #include "self_awareness/core/evidence/watch/machine_stalls.h"
