@@ -239,15 +239,14 @@ TEST(LearnedCounts, AddUpToThoseOfOneLearner) {
     if (first.empty() || second.empty()) {
       continue;
     }
-    Model sum = countsOf(counting(true, false), first);
-    const Model other = countsOf(counting(true, false), second);
-    sum.add(other);
-    EXPECT_TRUE(sum.evidence == threeRecordings(counting(true, false)).evidence) << in_first;
+    Model sum = countsOf(counting(true, true), first);
+    sum.add(countsOf(counting(true, true), second));
+    EXPECT_TRUE(sum.evidence == threeRecordings(counting(true, true)).evidence) << in_first;
+    EXPECT_TRUE(sum.statistics == threeRecordings(counting(true, true)).statistics) << in_first;
   }
   // Recordings of one half stay in two parts.
   Model sum = countsOf(counting(true, false), {10});
-  const Model other = countsOf(counting(true, false), {40});
-  sum.add(other);
+  sum.add(countsOf(counting(true, false), {40}));
   EXPECT_TRUE(sum.evidence == countsOf(counting(true, false), {10, 40}).evidence);
   EXPECT_EQ(eventsOf(sum.evidence[0]), 25U);
 }
@@ -316,7 +315,6 @@ TEST(LearnedCounts, WhatDoesNotFitIsNotAddedAndSaysWhy) {
   EXPECT_THROW(sum.add(countsOf(parameters, {20})), std::invalid_argument);
   EXPECT_THROW(sum.add(countsOf(counting(true, true), {20})), std::invalid_argument);
   Model part = countsOf(counting(true, false), {20});
-  part.graph.connect("/a", "/x", "/b");
   Model watched = part;
   watched.watch();
   watched.dropCounts();
@@ -327,8 +325,42 @@ TEST(LearnedCounts, WhatDoesNotFitIsNotAddedAndSaysWhy) {
   EXPECT_TRUE(sum.evidence == whole.evidence);
   EXPECT_TRUE(sum.statistics == whole.statistics);
   EXPECT_EQ(sum.recordings.size(), 2U);
-  EXPECT_EQ(sum.graph.edges().size(), 1U);
   EXPECT_FALSE(sum.isWatched()) << "it was chosen by fewer counts";
+}
+
+TEST(LearnedCounts, OfTwoModelsWhatHoldsForBothIsKept) {
+  const Learner::Parameters parameters = counting(true, false);
+  Model sum = countsOf(parameters, {10});
+  Model other = countsOf(parameters, {20});
+  sum.graph.connect("/a", "/x", "/b");
+  other.graph.connect("/a", "/x", "/b");
+  other.graph.connect("/b", "/y", "/c");
+  other.graph.place("/b", "base");
+  other.graph.addUnheard({"/b", "/debug"});
+  sum.graph.addLasting({"/b", "/x"}, 2);
+  other.graph.addLasting({"/b", "/x"}, 1);
+  sum.stamp = 3;
+  other.stamp = 2;
+  sum.tuning.least_effect = other.tuning.least_effect = 0.003;
+  sum.tuning.without = other.tuning.without = {"slower"};
+  const evidence::Tuning tuning = sum.tuning;
+  sum.watch();
+  sum.calibration = Calibration();
+  sum.paper_calibration = paper::Calibration();
+  sum.findings.resize(2);
+  sum.add(other);
+  EXPECT_EQ(sum.graph.hostOf("/b"), "base");
+  EXPECT_EQ(sum.graph.unheard().size(), 1U);
+  EXPECT_EQ(sum.graph.lasting().at({"/b", "/x"}), 3U) << "recordings that had it";
+  EXPECT_EQ(sum.graph.edges().size(), 2U);
+  EXPECT_EQ(sum.stamp, 3);
+  EXPECT_FALSE(sum.limits() || sum.threshold());
+  EXPECT_TRUE(sum.findings.empty()) << "what recordings showed to each other";
+  sum.watch();
+  EXPECT_TRUE(sum.tuning == tuning && sum.watched.tuning == tuning);
+  other.tuning.without = {};
+  sum.add(other);
+  EXPECT_TRUE(sum.tuning == evidence::Tuning{}) << "where they differ, those of this version";
 }
 
 TEST(CrossFit, AHalfIsJudgedByWhatTheOtherSays) {

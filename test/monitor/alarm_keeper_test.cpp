@@ -47,13 +47,15 @@ TEST_F(AlarmKeeperTest, WhatStoodIsReadByAnotherStartUnderTheSameRoscore) {
   EXPECT_FALSE(keeper("another run").read());
 }
 
-TEST_F(AlarmKeeperTest, AnAlarmOfAnotherModelStandsNoMoreAlsoWithTheOldOne) {
-  stood();
-  Started other = keeper("run", 4);
-  EXPECT_FALSE(other.read());
-  other.keep(alarm(SelfAwareness::OK), 0, "");
-  other.finish();
-  EXPECT_FALSE(keeper().read()) << "nobody watched for it meanwhile";
+TEST_F(AlarmKeeperTest, WhatDoesNotStandAgainOrIsOfAnotherModelIsForgotten) {
+  for (const std::uint64_t model : {3, 4}) {
+    stood();
+    Started second = keeper("run", model);
+    EXPECT_EQ(second.read().has_value(), model == 3);
+    second.keep(alarm(SelfAwareness::OK), 0, "");
+    second.finish();
+    EXPECT_FALSE(keeper().read()) << "nobody watched for it meanwhile";
+  }
 }
 
 TEST_F(AlarmKeeperTest, AFileThatNamesNoModelIsOfAny) {
@@ -63,15 +65,6 @@ TEST_F(AlarmKeeperTest, AFileThatNamesNoModelIsOfAny) {
   boost::filesystem::create_directory(path("recorder"));
   ros1::writeStandingAlarm(standing, path("recorder/watch.alarm"));
   EXPECT_TRUE(keeper().read());
-}
-
-TEST_F(AlarmKeeperTest, WhatStoodBeforeTheStartIsForgottenIfItDoesNotStandAgain) {
-  stood();
-  Started second = keeper();
-  EXPECT_TRUE(second.read());
-  second.keep(alarm(SelfAwareness::OK), 0, "");
-  second.finish();
-  EXPECT_FALSE(keeper().read());
 }
 
 }  // namespace

@@ -62,14 +62,11 @@ TEST(GraphOfTheRobot, WhoRunsAndDoesNotSubscribeIsMissing) {
   Graph repaired = robot();
   repaired.topics["/scan"].subscribers.insert("/planner");
   EXPECT_TRUE(missingIn(repaired, encoder, expected).empty());
-}
-
-TEST(GraphOfTheRobot, AMonitorInAManagerOfTheRobotHidesNoSubscription) {
-  Graph graph;
-  graph.topics["/image"] = {"T", {"/camera"}, {"/manager"}};
-  graph.topics["/watch/status"] = {"self_awareness/SelfAwareness", {"/manager"}, {}};
-  const Encoder encoder(EncodingRules::defaults(), nullptr);
-  EXPECT_TRUE(missingIn(graph, encoder, {{"/manager", "/image"}}).empty());
+  Graph managed;
+  managed.topics["/image"] = {"T", {"/camera"}, {"/manager"}};
+  managed.topics["/watch/status"] = {"self_awareness/SelfAwareness", {"/manager"}, {}};
+  EXPECT_TRUE(missingIn(managed, encoder, {{"/manager", "/image"}}).empty())
+      << "a monitor in a manager of the robot hides no subscription";
 }
 
 TEST(GraphOfTheRobot, KnowsOnWhichComputersSourcesRun) {
@@ -143,6 +140,11 @@ TEST(OwnOutput, LeavesOutWhatOtherNodesOfThePackageSayOfThemselves) {
   EXPECT_FALSE(own.covers("/player", "/rosout"));
   EXPECT_FALSE(own.covers("/base", "/rosout")) << "the model knows it";
   EXPECT_TRUE(own.covers("/base", "/diagnostics"));
+  const OwnOutput manager("/manager", {{"/manager", "/scan"}, {"/manager", "/rosout"}}, plain());
+  EXPECT_TRUE(manager.covers("/manager", "/watch/status"));
+  EXPECT_TRUE(manager.covers("/manager", "/rosout"));
+  EXPECT_FALSE(manager.covers("/manager", "/scan"));
+  EXPECT_FALSE(manager.covers("/player", "/watch/status"));
 }
 
 TEST(NamedOnce, NamesEachOnceAndNotTooMany) {
@@ -156,45 +158,27 @@ TEST(NamedOnce, NamesEachOnceAndNotTooMany) {
   EXPECT_EQ(count, NamedOnce::kMost);
 }
 
-TEST(OwnOutput, IsWhatTheModelDoesNotKnowFromTheProcess) {
-  const OwnOutput own("/manager", {{"/manager", "/scan"}, {"/manager", "/rosout"}}, plain());
-  EXPECT_TRUE(own.covers("/manager", "/watch/status"));
-  EXPECT_TRUE(own.covers("/manager", "/rosout"));
-  EXPECT_FALSE(own.covers("/manager", "/scan"));
-  EXPECT_FALSE(own.covers("/player", "/watch/status"));
-}
-
-class NothingHeardTest : public testing::Test {
- protected:
-  static EncodingRules defaults() {
-    EncodingRules rules;
-    rules.exclude_sources = {"/play"};
-    return rules;
-  }
-
-  Graph graph_;
-  const Encoder encoder_{defaults(), [](const core::EventType&) { return core::EventId{0}; }};
-};
-
-TEST_F(NothingHeardTest, ARobotThatIsOff) {
-  graph_.topics["/rosout"] = {"rosgraph_msgs/Log", {"/rosout_agg"}, {}};
-  graph_.topics["/monitor/status"] = {"self_awareness/SelfAwareness", {"/monitor"}, {}};
-  graph_.topics["/diagnostics"] = {"diagnostic_msgs/DiagnosticArray", {"/monitor"}, {}};
-  EXPECT_EQ(whyNothingIsHeard(graph_, encoder_, false), "no node of a robot publishes anything");
-}
-
-TEST_F(NothingHeardTest, APlayerIsNamedWithTheWayOut) {
-  graph_.topics["/scan"] = {"sensor_msgs/LaserScan", {"/play_1764000000000000000"}, {"/slam"}};
-  graph_.topics["/odom"] = {"nav_msgs/Odometry", {"/play_1764000000000000000"}, {"/slam"}};
-  EXPECT_EQ(whyNothingIsHeard(graph_, encoder_, false),
+TEST(NothingHeard, IsOfARobotThatIsOffAPlayerOrAPublisherThatIsNotHeard) {
+  EncodingRules rules;
+  rules.exclude_sources = {"/play"};
+  const auto why = [&](const Graph& graph, bool unheard = false) {
+    return whyNothingIsHeard(graph, Encoder(rules, nullptr), unheard);
+  };
+  Graph off;
+  off.topics["/rosout"] = {"rosgraph_msgs/Log", {"/rosout_agg"}, {}};
+  off.topics["/monitor/status"] = {"self_awareness/SelfAwareness", {"/monitor"}, {}};
+  off.topics["/diagnostics"] = {"diagnostic_msgs/DiagnosticArray", {"/monitor"}, {}};
+  EXPECT_EQ(why(off), "no node of a robot publishes anything");
+  Graph played;
+  played.topics["/scan"] = {"sensor_msgs/LaserScan", {"/play_1764000000000000000"}, {"/slam"}};
+  played.topics["/odom"] = {"nav_msgs/Odometry", {"/play_1764000000000000000"}, {"/slam"}};
+  EXPECT_EQ(why(played),
             "/play_1764000000000000000 plays 2 topics; players are left out: use `score BAG` or "
             "`train BAG`, or `source: none` in the encoding");
-}
-
-TEST_F(NothingHeardTest, APublisherThatIsNotHeard) {
-  graph_.topics["/scan"] = {"sensor_msgs/LaserScan", {"/lidar"}, {}};
-  EXPECT_EQ(whyNothingIsHeard(graph_, encoder_, false), "nothing is sent on /scan");
-  EXPECT_EQ(whyNothingIsHeard(graph_, encoder_, true),
+  Graph robot;
+  robot.topics["/scan"] = {"sensor_msgs/LaserScan", {"/lidar"}, {}};
+  EXPECT_EQ(why(robot), "nothing is sent on /scan");
+  EXPECT_EQ(why(robot, true),
             "no node of the robot subscribes to /scan; launch it with subscribe:=all to listen "
             "all the same");
 }

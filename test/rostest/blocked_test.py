@@ -36,11 +36,11 @@ def node(code: str) -> Process:
     return Process(sys.executable, '-c', code)
 
 
+@again_if_disturbed
 class BlockedTest(TrainedCase):
 
     components = [('/camera', '/image', 0.1), ('/base', '/odom', 0.1)]
 
-    @again_if_disturbed
     def test_who_waits_for_a_subscriber_that_hangs_is_told_with_it(self) -> None:
         with base(), node(CAMERA), node(VIEWER) as viewer, \
                 self.trained_monitor(unknown='ignore'), MonitorListener() as listener:
@@ -53,8 +53,7 @@ class BlockedTest(TrainedCase):
             self.assertEqual((said.level, said.component, said.kind),
                              (SelfAwareness.ERROR, '/camera', SelfAwareness.SILENT))
             self.assertIn('/camera (/image) stopped sending at ', said.message)
-            await_condition('it is on /diagnostics', lambda: SAID in listener.diagnostics(
-                'communication')[-1].message, 20)
+            listener.await_diagnostics('communication', SAID)
             viewer.send(signal.SIGCONT)
             await_condition('it is over', lambda: (
                 listener.statuses[-1].level == SelfAwareness.OK), 40)

@@ -57,6 +57,7 @@ def bursts(burst: int, seed: int) -> List[Message]:
             for k in range(burst)]
 
 
+@again_if_disturbed
 class ChaosTest(TrainedCase):
     unloads = 0
     types = 0
@@ -78,12 +79,6 @@ class ChaosTest(TrainedCase):
     def await_heard(self, listener: MonitorListener) -> None:
         listener.await_heard('/driver', '/base', '/second')
 
-    def await_said(self, listener: MonitorListener, task: str, part: str, level: int,
-                   timeout: float = 30) -> DiagnosticStatus:
-        return await_condition('{} at level {}'.format(part, level), lambda: next(
-            (s for s in listener.diagnostics(task) if part in s.message and s.level == level),
-            None), timeout)
-
     def check_no_alarm(self, listener: MonitorListener) -> None:
         self.assertEqual(listener.errors, [])
 
@@ -96,7 +91,6 @@ class ChaosTest(TrainedCase):
 
     # Names and messages
 
-    @again_if_disturbed
     def test_names_and_sizes_that_nobody_would_choose(self) -> None:
         """What cannot be listened to is named once and left out; all else is heard."""
         longest = '/' + 999 * 'a'
@@ -133,7 +127,6 @@ class ChaosTest(TrainedCase):
             self.assertEqual(sorted(name.replace('\xfc', '??') for name in left_out), sorted(
                 name[:100].replace('\xfc', '??') for name in illegal + trained))
 
-    @again_if_disturbed
     def test_new_names_without_end_silence_nothing(self) -> None:
         topics = ['/come_and_go_{}'.format(number) for number in range(200)]
         stop = threading.Event()
@@ -159,7 +152,6 @@ class ChaosTest(TrainedCase):
 
     # Too much
 
-    @again_if_disturbed
     def test_twenty_thousand_messages_a_second(self) -> None:
         with driver() as victim, self.judging_monitor(unknown='ignore') as monitor, \
                 MonitorListener() as listener:
@@ -174,7 +166,6 @@ class ChaosTest(TrainedCase):
             self.assertLess(max(later - earlier for earlier, later in zip(
                 listener.heartbeats, listener.heartbeats[1:])), 3)
 
-    @again_if_disturbed
     def test_what_a_queue_loses_is_no_fault_of_who_sent_it(self) -> None:
         burst = 30
         model = self.path('bursts')
@@ -184,12 +175,11 @@ class ChaosTest(TrainedCase):
             for seed in (1, 2)])
         with driver() as victim, storm(rate=10 * burst, burst=burst), \
                 self.judging_monitor(model=model, queue_size=1), MonitorListener() as listener:
-            self.await_said(listener, 'monitor', OVERLOADED, DiagnosticStatus.WARN)
+            listener.await_diagnostics('monitor', OVERLOADED, DiagnosticStatus.WARN)
             listener.next_statuses(50)
             self.check_no_alarm(listener)
             self.check_alarm_names(listener, victim)
 
-    @again_if_disturbed
     def test_a_monitor_that_stood_still_raises_no_false_alarm(self) -> None:
         with driver() as victim, self.judging_monitor() as monitor, \
                 MonitorListener() as listener:
@@ -197,8 +187,8 @@ class ChaosTest(TrainedCase):
             monitor.send(signal.SIGSTOP)
             time.sleep(2)  # the fault: there is nothing to wait for
             monitor.send(signal.SIGCONT)
-            self.await_said(listener, 'monitor', OVERLOADED + 'this program stood still',
-                            DiagnosticStatus.WARN)
+            listener.await_diagnostics('monitor', OVERLOADED + 'this program stood still',
+                                       DiagnosticStatus.WARN)
             listener.next_statuses(40)
             self.check_no_alarm(listener)
             victim.send(signal.SIGKILL)
@@ -211,7 +201,6 @@ class ChaosTest(TrainedCase):
             self.assertEqual(alarm.suspects[0].scope, '/scan')
             self.assertLess(time.monotonic() - resumed, 2.5)  # 3 s and more where all settled
 
-    @again_if_disturbed
     def test_the_system_clock_is_set(self) -> None:
         step = self.path('step')
         with driver() as victim, ExitStack() as monitor, MonitorListener() as listener:
@@ -241,7 +230,6 @@ class ChaosTest(TrainedCase):
             file.write(text)
         os.rename(path + '.new', path)
 
-    @again_if_disturbed
     def test_event_types_without_end_take_no_memory(self) -> None:
         model = self.model(type_fields={'std_msgs/String': 'data'}, threshold=-1.0)
         with Talker('/a'), self.monitor(model, subscribe='all') as monitor, \
@@ -249,8 +237,8 @@ class ChaosTest(TrainedCase):
             listener.await_settled()
             pid = pid_of('/self_awareness')
             with storm(rate=1000, values=10**9):
-                said = self.await_said(
-                    listener, 'monitor', 'more than 1000 event types', DiagnosticStatus.WARN)
+                said = listener.await_diagnostics(
+                    'monitor', 'more than 1000 event types', DiagnosticStatus.WARN)
                 self.assertIn('not told apart', said.message)
                 before = resident_bytes(pid)
                 await_condition('many types', lambda: sum(
@@ -265,7 +253,6 @@ class ChaosTest(TrainedCase):
 
     # The monitor itself
 
-    @again_if_disturbed
     def test_a_monitor_that_is_killed_is_back_with_its_alarm(self) -> None:
         launch = self.path('respawn.launch')
         self.write(launch, RESPAWNED.format(model=self.trained, folder=self.path('recorder')))
@@ -293,7 +280,6 @@ class ChaosTest(TrainedCase):
 
     # The nodelet
 
-    @again_if_disturbed
     def test_the_nodelet_is_unloaded_and_loaded_again(self) -> None:
         """In a manager that lives on; every second time while an alarm stands."""
         rospy.set_param('/watch', {'model': self.model(), 'detector': 'paper',

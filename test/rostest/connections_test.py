@@ -24,6 +24,7 @@ def ignore(_: String) -> None:
     pass
 
 
+@again_if_disturbed
 class ConnectionsTest(MonitorCase):
 
     def trained(self) -> str:
@@ -38,7 +39,6 @@ class ConnectionsTest(MonitorCase):
         model.save(self.path('model'))
         return self.path('model')
 
-    @again_if_disturbed
     def test_who_does_not_subscribe_or_logs_an_error_is_named(self) -> None:
         model = self.trained()
         camera = talker('camera', '/image', 10)

@@ -25,6 +25,7 @@ LONGER_S = 12.0  # than the shortest stretch of normal operation that is kept
 LOAD = re.compile(r' \(load [\d.]+ on \d+ cores?\)')
 
 
+@again_if_disturbed
 class FlightRecorderTest(TrainedCase):
 
     def folder_of_files(self) -> str:
@@ -33,7 +34,6 @@ class FlightRecorderTest(TrainedCase):
     def files(self, pattern: str) -> List[str]:
         return sorted(glob.glob(os.path.join(self.folder_of_files(), pattern)))
 
-    @again_if_disturbed
     def test_a_killed_node_is_in_a_file_that_score_reads(self) -> None:
         after = 3
         with driver() as victim, base(), \
@@ -47,10 +47,7 @@ class FlightRecorderTest(TrainedCase):
             path = found.group(1)
             self.assertEqual(os.path.dirname(path), self.folder_of_files())
             self.assertFalse(os.path.exists(path), 'what follows is missing')
-            status = await_condition('ERROR of the whole', lambda: next(
-                (s for s in listener.diagnostics('communication')
-                 if s.level == DiagnosticStatus.ERROR), None), 20)
-            self.assertIn(path, status.message)
+            listener.await_diagnostics('communication', path, DiagnosticStatus.ERROR)
             await_condition('the file', lambda: os.path.exists(path), 20)
             await_condition('the file is reported', lambda: (
                 listener.value('monitor', 'last file') == path), 20)
@@ -87,17 +84,14 @@ class FlightRecorderTest(TrainedCase):
         last = max(replayed) / 1e9
         self.assertGreater(last, alarm.header.stamp.to_sec() + 2, 'what follows is in it')
 
-    @again_if_disturbed
     def test_a_disk_that_takes_nothing_is_a_warning_and_it_is_tried_again(self) -> None:
         with open(self.folder_of_files(), 'w') as file:
             file.write('in the way')
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
             listener.await_settled()
             self.call('/self_awareness/dump')
-            warning = await_condition('the warning', lambda: next(
-                (s for s in listener.diagnostics('monitor')
-                 if 'the flight recorder cannot write' in s.message), None), 20)
-            self.assertEqual(warning.level, DiagnosticStatus.WARN)
+            warning = listener.await_diagnostics(
+                'monitor', 'the flight recorder cannot write', DiagnosticStatus.WARN)
             self.assertIn('but a file', warning.message)
             response = self.call('/self_awareness/dump')
             self.assertFalse(response.success)
@@ -108,7 +102,6 @@ class FlightRecorderTest(TrainedCase):
                 listener.diagnostics('monitor')[-1].level == DiagnosticStatus.OK), 20)
             self.assertEqual(self.files('*.part'), [])
 
-    @again_if_disturbed
     def test_what_was_normal_is_kept_but_for_maintenance(self) -> None:
         model = self.model()
         for is_maintained in (True, False):

@@ -61,9 +61,9 @@ class LearnCase(FolderCase):
         await_condition('a log', lambda: glob.glob(self.model + '.logs/*.bag.active'), 30)
 
 
+@again_if_disturbed
 class LearnedTest(LearnCase):
 
-    @again_if_disturbed
     def test_from_nothing_to_an_alarm(self) -> None:
         with MonitorListener() as listener, self.learn(HOURS) as process:
             self.await_said(listener, ', 1 start of the robot', DiagnosticStatus.OK, 60)

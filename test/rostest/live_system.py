@@ -9,7 +9,7 @@ import tempfile
 import threading
 import time
 import unittest
-from typing import (Any, Callable, Dict, Iterable, Iterator, List, Optional, Set, Tuple,
+from typing import (Any, Callable, Dict, Iterable, Iterator, List, Optional, Set, Tuple, Type,
                     TypeVar)
 from xmlrpc.client import ServerProxy
 
@@ -26,6 +26,7 @@ from self_awareness.recordings import RecordingEvents
 from self_awareness.status_names import task_of
 
 T = TypeVar('T')
+Case = TypeVar('Case', bound=unittest.TestCase)
 
 START_S = 1600000000.0
 """Of the recordings that operation() makes up, since 1970."""
@@ -85,12 +86,18 @@ class Ticks:
             last = now
 
 
-def again_if_disturbed(test: Callable) -> Callable:
-    """Decorates a test: if it fails while the machine disturbs it, it has a second try.
+def again_if_disturbed(case: Type[Case]) -> Type[Case]:
+    """Decorates a case: a test that fails while the machine disturbs it has a second try.
 
     A machine may stand still (a virtual one, while its host is busy), or its clock is set (by NTP,
     by the host). The monitor says so, and settles once more or starts from the beginning.
     """
+    for name in [name for name in vars(case) if name.startswith('test_')]:
+        setattr(case, name, _again(getattr(case, name)))
+    return case
+
+
+def _again(test: Callable) -> Callable:
     @functools.wraps(test)
     def run(self: unittest.TestCase) -> None:
         ahead = time.time() - time.monotonic()
@@ -264,6 +271,13 @@ class MonitorListener:
         with self._lock:
             return [status for status in self._diagnostics
                     if task_of(self._name, status.name) == task]
+
+    def await_diagnostics(self, task: str, words: str, level: Optional[int] = None,
+                          since: int = 0, timeout: float = 40) -> DiagnosticStatus:
+        """Waits for a status of a task with these words, after so many of them."""
+        return await_condition('{} at level {}'.format(words, level), lambda: next(
+            (status for status in self.diagnostics(task)[since:]
+             if words in status.message and level in (None, status.level)), None), timeout)
 
     def value(self, task: str, key: str) -> Optional[str]:
         """A value of the task's last status; None if there is none yet."""

@@ -69,6 +69,7 @@ class Listener(Process):
         return max(later - earlier for earlier, later in zip(beats, beats[1:]))
 
 
+@again_if_disturbed
 class MasterTest(FolderCase):
 
     def setUp(self) -> None:
@@ -137,7 +138,6 @@ class MasterTest(FolderCase):
         self.assertEqual(alarm['suspects'][0], source)
         listener.await_message('diagnostics', since, task=source, level=DiagnosticStatus.ERROR)
 
-    @again_if_disturbed
     def test_master_comes_late(self) -> None:
         monitor = self.start_monitor()
         await_condition('the monitor misses the master',
@@ -150,7 +150,6 @@ class MasterTest(FolderCase):
         self.await_normal(listener)
         self.assertTrue(monitor.running())
 
-    @again_if_disturbed
     def test_master_hangs_and_dies(self) -> None:
         master = self.start_master()
         self.start_monitor()
@@ -185,7 +184,6 @@ class MasterTest(FolderCase):
         self.check_no_alarm(listener, dead)
         self.assertLess(listener.longest_heartbeat(), LONGEST_HEARTBEAT_S)
 
-    @again_if_disturbed
     def test_the_nodes_end_whatever_the_master_does(self) -> None:
         for hangs in (True, False):
             master = self.start_master()
@@ -218,7 +216,6 @@ class MasterTest(FolderCase):
             self.doCleanups()
             self.setUp()
 
-    @again_if_disturbed
     def test_master_is_restarted(self) -> None:
         master = self.start_master()
         monitor = self.start_monitor()

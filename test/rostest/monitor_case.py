@@ -179,17 +179,16 @@ class TrainedCase(MonitorCase):
 
     components = [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)]
     """Source, topic and mean period [s] of each."""
-    bags: List[str]
     trained: str
 
     @classmethod
     def setUpClass(cls) -> None:
         folder = tempfile.mkdtemp()
         cls.addClassCleanup(shutil.rmtree, folder)
-        cls.bags = [write_bag(os.path.join(folder, '{}.bag'.format(seed)),
-                              operation(cls.components, 120, seed)) for seed in (1, 2)]
         cls.trained = os.path.join(folder, 'trained')
-        run_program('train', *cls.bags, '-o', cls.trained)
+        run_program('train', '-o', cls.trained, *[
+            write_bag(os.path.join(folder, '{}.bag'.format(seed)),
+                      operation(cls.components, 120, seed)) for seed in (1, 2)])
 
     def setUp(self) -> None:
         super().setUp()

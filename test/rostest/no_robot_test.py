@@ -20,19 +20,17 @@ def minutes(status: DiagnosticStatus) -> float:
     return float(re.search(r'learning: ([0-9.]+) min of 3\.0 min', status.message).group(1))
 
 
+@again_if_disturbed
 class NoRobotTest(MonitorCase):
 
-    @again_if_disturbed
     def test_a_monitor_beside_a_player_names_it(self) -> None:
         bag = write_bag(self.path('robot.bag'), operation(
             [('/lidar', '/a', 0.1), ('/slam', '/b', 0.1), ('/base', '/c', 0.1)], 60, 1))
         with self.monitor(self.model(sources={'/a': '/lidar'})), MonitorListener() as listener, \
                 Process('rosbag', 'play', '--loop', '--quiet', bag):
-            said = await_condition('the player is named', lambda: next(
-                (status for status in listener.diagnostics('communication')
-                 if ' plays 3 topics; players are left out: use `score BAG`' in status.message),
-                None), 40)
-            self.assertEqual(said.level, DiagnosticStatus.WARN)
+            said = listener.await_diagnostics(
+                'communication', ' plays 3 topics; players are left out: use `score BAG`',
+                DiagnosticStatus.WARN)
             self.assertRegex(said.message, r'nothing has been heard for 1\d s: /play_\d+ plays')
             components = {each.name: each for each in rospy.wait_for_message(
                 '/self_awareness/components', Components, 20).components}
@@ -41,7 +39,6 @@ class NoRobotTest(MonitorCase):
             self.assertEqual(components[rospy.get_name()].not_watched,
                              'it publishes nothing that is listened to')
 
-    @again_if_disturbed
     def test_what_is_not_heard_is_told_and_does_not_count(self) -> None:
         def last() -> DiagnosticStatus:
             statuses = listener.diagnostics('communication')

@@ -3,7 +3,6 @@
 
 import json
 import os
-import re
 import signal
 from typing import Any, Dict, List, Optional, Tuple
 
@@ -21,6 +20,7 @@ from self_awareness.srv import Mute, MuteResponse
 NODE = '/self_awareness'
 
 
+@again_if_disturbed
 class OperatorTest(TrainedCase):
 
     def setUp(self) -> None:
@@ -58,7 +58,6 @@ class OperatorTest(TrainedCase):
         return json.loads(run_program('incidents', '--json', '--file',
                                       self.path('recorder/self_awareness.incidents')))
 
-    @again_if_disturbed
     def test_an_incident_is_opened_repeated_and_over_and_outlives_the_monitor(self) -> None:
         with base():
             with self.monitored() as monitor, MonitorListener() as listener:
@@ -109,12 +108,9 @@ class OperatorTest(TrainedCase):
 
     def await_level(self, listener: MonitorListener, level: int, words: str) -> None:
         """Waits for a status of the whole, from now on."""
-        seen = len(listener.diagnostics('communication'))
-        await_condition('{} with {}'.format(level, words), lambda: any(
-            each.level == level and words in each.message
-            for each in listener.diagnostics('communication')[seen:]), 20)
+        listener.await_diagnostics('communication', words, level,
+                                   since=len(listener.diagnostics('communication')))
 
-    @again_if_disturbed
     def test_what_is_muted_is_judged_and_told_when_the_mute_ends(self) -> None:
         with base(), self.monitored() as monitor, \
                 MonitorListener() as listener, driver() as victim:
@@ -136,8 +132,13 @@ class OperatorTest(TrainedCase):
             self.await_level(listener, DiagnosticStatus.ERROR, 'stopped sending')
             self.assertIsNone(listener.value('monitor', 'mute 1'))
             await_condition('it is told', lambda: '[ERROR]' in monitor.output, 20)
+            # What stands may be accepted, too.
+            said = accept(alarm=alarm.alarm)
+            self.assertIn('/driver on /scan (silent)', said.message)
+            listener.await_diagnostics('/driver', 'not watched: accepted', DiagnosticStatus.OK)
+            await_condition('it is over', lambda: (
+                listener.alarms[-1].level != SelfAwareness.ERROR), 20)
 
-    @again_if_disturbed
     def test_a_mute_of_nothing_or_for_ever_is_refused(self) -> None:
         with self.monitored():
             refused: List[Tuple[Dict[str, Any], str]] = [
@@ -168,11 +169,10 @@ class OperatorTest(TrainedCase):
                     and 'unknown events' not in status.message)
         await_condition('normal', is_normal, 20)
 
-    @again_if_disturbed
     def test_a_new_node_is_told_once_and_accepted_for_other_starts(self) -> None:
         file = self.path('model.accepted')
-        with base(), driver():
-            with self.trained_monitor() as monitor, MonitorListener() as listener:
+        with base():
+            with driver(), self.trained_monitor() as monitor, MonitorListener() as listener:
                 listener.await_heard('/driver', '/base')
                 with talker('joystick', '/joy', 10):
                     await_condition('it is told', lambda: any(
@@ -193,9 +193,11 @@ class OperatorTest(TrainedCase):
                                             for alarm in listener.alarms), 'it was told once')
                     await_condition('its file', lambda: os.path.exists(file), 20)
                 monitor.stop()
+            rospy.set_param(NODE + '/optional', ['/driv*'])
             with self.trained_monitor() as monitor, MonitorListener() as listener:
                 with talker('joystick', '/joy', 10):
-                    listener.await_heard('/driver', '/base')
+                    listener.await_heard('/base')
+                    listener.await_diagnostics('/driver', 'optional (absent)')
                     await_condition('it listens', lambda: NODE in subscribers('/joy'), 20)
                     with talker('another', '/new', 10):  # as long as it takes to tell of it
                         await_condition('another is told', lambda: any(
@@ -207,58 +209,10 @@ class OperatorTest(TrainedCase):
                     self.assertTrue(said.success, said.message)
                     await_condition('it is told again', lambda: any(
                         '/joystick' in alarm.message for alarm in listener.alarms), 20)
-
-    @again_if_disturbed
-    def test_what_stands_is_accepted_until_it_is_trained(self) -> None:
-        with self.trained_monitor(), MonitorListener() as listener, base():
-            with driver():
-                listener.await_heard('/driver', '/base')
-            alarm = listener.await_alarm()
-            self.assertEqual(alarm.component, '/driver')
-            self.assertIn('does not stand any more', accept(alarm=alarm.alarm + 1).message)
-            said = accept(alarm=alarm.alarm)
-            self.assertTrue(said.success, said.message)
-            self.assertIn('/driver on /scan (silent)', said.message)
-            self.await_normal(listener)
-            await_condition('it is not watched', lambda: (
-                listener.value('/driver', 'death found after [s]') == 'not watched: accepted'), 20)
-            self.assertIn('(silent)', listener.value('/driver', 'accepted'))
-            self.await_value(listener, 'not watched', '/driver (accepted)')
-            self.assertIn('not watched: accepted', listener.diagnostics('/driver')[-1].message)
-            self.assertFalse([status.message for status in listener.next_statuses(50)
-                              if any(each.component == '/driver' for each in status.suspects)])
-            said = accept(component='/driver', undo=True)
-            self.assertTrue(said.success, said.message)
-            self.assertIn('judged again', said.message)
-            await_condition('it is an alarm again', lambda: (
-                listener.alarms[-1].level == SelfAwareness.ERROR), 20)
-            self.assertFalse(accept(component='/driver', undo=True).success, 'it is not accepted')
+                    self.assertEqual(listener.errors, [])
 
     # Who is started again, by hand or by roslaunch
 
-    @again_if_disturbed
-    def test_who_is_optional_may_be_absent_and_is_judged_while_there(self) -> None:
-        rospy.set_param(NODE + '/optional', ['/driv*'])
-        with base(), self.trained_monitor(), MonitorListener() as listener:
-            listener.await_heard('/base')
-            await_condition('it is absent', lambda: any(
-                status.message == 'optional (absent)'
-                for status in listener.diagnostics('/driver')), 20)
-            with driver():
-                listener.await_heard('/driver')
-                await_condition('its rate', lambda: re.fullmatch(
-                    r'[\d.]+ of 1[23](\.\d)? Hz', listener.value('/driver', '/scan') or ''), 20)
-                await_condition('the share of its limit', lambda: re.fullmatch(
-                    r'\d\d? %', listener.value('/base', 'share of limit') or ''), 20)
-            self.assertFalse([status.message for status in listener.next_statuses(100)
-                              if status.abnormal])
-            self.assertEqual(listener.errors, [])
-            self.assertEqual(listener.diagnostics('/driver')[-1].message, 'optional (absent)')
-            with driver(30):
-                alarm = listener.await_alarm()
-                self.assertEqual(alarm.component, '/driver', 'it is there, and too fast')
-
-    @again_if_disturbed
     def test_a_node_that_is_started_again_is_followed(self) -> None:
         with base(), self.trained_monitor(), MonitorListener() as listener:
             for times in range(1, 5):

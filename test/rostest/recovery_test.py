@@ -42,15 +42,14 @@ class RecoveryListener(MonitorListener):
 
     def await_status(self, level: int, words: str) -> DiagnosticStatus:
         """Waits for a status from now on."""
-        seen = len(self.diagnostics('recovery'))
-        return await_condition('{} with {}'.format(level, words), lambda: next(
-            (each for each in self.diagnostics('recovery')[seen:]
-             if each.level == level and words in each.message), None), 40)
+        return self.await_diagnostics('recovery', words, level,
+                                      since=len(self.diagnostics('recovery')))
 
     def _on_actions(self, message: RecoveryActions) -> None:
         self.actions = message.actions
 
 
+@again_if_disturbed
 class RecoveryTest(MonitorCase):
 
     trained: str
@@ -99,7 +98,6 @@ class RecoveryTest(MonitorCase):
     def hold(self, duration: float) -> MaintenanceResponse:
         return rospy.ServiceProxy(RECOVERY + '/hold', Maintenance)(duration)
 
-    @again_if_disturbed
     def test_who_hangs_is_back_within_5_s_of_the_alarm_and_nobody_else_is_touched(self) -> None:
         others = ['/' + spec.name for spec in load_scenario().components
                   if '/' + spec.name != PLAYER]
@@ -130,7 +128,6 @@ class RecoveryTest(MonitorCase):
             self.assertEqual([[did['action'] for did in each['actions']] for each in shown
                               if each['id'] == alarm.alarm], [['stop /player']])
 
-    @again_if_disturbed
     def test_nothing_is_done_while_it_is_held_then_step_after_step(self) -> None:
         service = rospy.Service('/does_not_help', Trigger,
                                 lambda _: TriggerResponse(True, 'no change'))

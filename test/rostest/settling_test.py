@@ -7,12 +7,11 @@ from typing import List
 
 import rospy
 import rostest
-from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import String
 
 from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          talker)
-from monitor_case import Talker, TrainedCase, base, driver
+from monitor_case import MonitorCase, Talker
 from self_awareness.msg import SelfAwareness
 
 
@@ -20,13 +19,10 @@ def late() -> Process:
     return talker('late', '/late', 10)
 
 
-class SettlingTest(TrainedCase):
-
-    components = [*TrainedCase.components, ('/late', '/late', 0.1)]
-
+@again_if_disturbed
+class SettlingTest(MonitorCase):
     # New publishers
 
-    @again_if_disturbed
     def test_the_first_message_of_a_publisher_that_was_there_lets_nothing_settle(self) -> None:
         rare = rospy.Publisher('/rare', String, queue_size=1)
         self.addCleanup(rare.unregister)
@@ -46,7 +42,6 @@ class SettlingTest(TrainedCase):
 
     # By the paper's detector: the whole robot settles.
 
-    @again_if_disturbed
     def test_settling_does_not_wait_for_the_next_poll_of_the_master(self) -> None:
         with Talker('/a'), self.monitor(self.late_model(), poll_interval=3600), \
                 MonitorListener() as listener:
@@ -57,29 +52,8 @@ class SettlingTest(TrainedCase):
     def late_model(self) -> str:
         return self.model(topics=('/a', '/late'), sources={'/late': '/late'})
 
-    # By the default detector: what is new settles, and nothing else.
-
-    @again_if_disturbed
-    def test_what_does_not_come_after_the_start_is_said(self) -> None:
-        with driver(), base(), self.trained_monitor(subscribe='used'), \
-                MonitorListener() as listener:
-            listener.await_settled()
-            await_condition('it is missing', lambda: any(
-                'never heard' in s.evidence for s in listener.statuses), 20)
-            status = await_condition('it is named', lambda: next(
-                (x for x in listener.diagnostics('/late') if x.level != DiagnosticStatus.OK),
-                None), 20)
-            self.assertEqual(status.level, DiagnosticStatus.WARN)
-            self.assertRegex(status.message,
-                             r'^/late: not heard since the start, usually within \S+ to \S+ s$')
-            with late():
-                await_condition('it is over', lambda: (
-                    'never heard' not in listener.statuses[-1].evidence
-                    and listener.diagnostics('/late')[-1].message == 'heard'), 20)
-
     # ~reload
 
-    @again_if_disturbed
     def test_reload_takes_the_model_that_is_set_now(self) -> None:
         first, second = self.model(name='first'), self.model(name='second', topics=('/a', '/b'))
         with Talker('/a'), Talker('/b'), self.monitor(first), MonitorListener() as listener:
@@ -102,7 +76,6 @@ class SettlingTest(TrainedCase):
             rospy.delete_param('/self_awareness/model')
             self.assertIn(second, self.call('/self_awareness/reload').message)
 
-    @again_if_disturbed
     def test_after_reload_windows_are_judged_in_the_pace_of_the_new_model(self) -> None:
         arrivals: List[float] = []
         with self.monitor(self.model(window=4 * 10**9)), MonitorListener() as listener:

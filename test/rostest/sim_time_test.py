@@ -91,6 +91,7 @@ class SimulatedRobot:
                     due[topic] += period * rng.uniform(0.7, 1.3)
 
 
+@again_if_disturbed
 class SimTimeTest(FolderCase):
 
     def setUp(self) -> None:
@@ -148,7 +149,6 @@ class SimTimeTest(FolderCase):
         normal = [status for status in settled if not status.abnormal]
         self.assertGreater(len(normal), 0.8 * len(settled), [s.score for s in settled])
 
-    @again_if_disturbed
     def test_heartbeat_before_the_first_clock(self) -> None:
         with MonitorListener() as listener, self.start_monitor():
             self.await_listening(listener)
@@ -162,15 +162,12 @@ class SimTimeTest(FolderCase):
                              'waiting for the first message')
             self.assertEqual(listener.statuses, [])
 
-    @again_if_disturbed
     def test_two_publishers_of_the_clock_hide_no_death(self) -> None:
         with MonitorListener() as listener, self.start_monitor(), SimulatedRobot() as robot:
             listener.await_settled()
             with Process('rostopic', 'pub', '-r', '50', '/clock', 'rosgraph_msgs/Clock',
                          '{clock: {secs: 5000, nsecs: 0}}'):
-                warning = await_condition('both are named', lambda: next((
-                    s for s in listener.diagnostics('monitor')
-                    if s.level == DiagnosticStatus.WARN and '/clock' in s.message), None), 20)
+                warning = listener.await_diagnostics('monitor', '/clock', DiagnosticStatus.WARN)
                 self.assertIn(rospy.get_name(), warning.message)
                 self.assertIn('/rostopic_', warning.message)
                 listener.await_settled()
@@ -181,11 +178,8 @@ class SimTimeTest(FolderCase):
                 robot.fall_silent()
                 suspect = listener.await_alarm().suspects[0]
                 self.assertEqual((suspect.source, suspect.scope), ('', '/scan'))
-                await_condition('ERROR of the topic', lambda: any(
-                    status.level == DiagnosticStatus.ERROR
-                    for status in listener.diagnostics('/scan')), 5)
+                listener.await_diagnostics('/scan', '', DiagnosticStatus.ERROR)
 
-    @again_if_disturbed
     def test_clock_is_set_and_stops(self) -> None:
         with MonitorListener() as listener, self.start_monitor() as monitor, \
                 SimulatedRobot() as robot:
@@ -216,7 +210,6 @@ class SimTimeTest(FolderCase):
                           listener.diagnostics('communication')[-1].message)
             self.check_no_alarm(listener)
 
-    @again_if_disturbed
     def test_recordings_are_complete_and_end_where_the_clock_was_set(self) -> None:
         with MonitorListener('/recorder') as listener, \
                 ours('record_events', '_subscribe:=all',
@@ -235,7 +228,6 @@ class SimTimeTest(FolderCase):
             self.assertLess(max(stamps) - min(stamps), 100 * 10**9)
         self.assertGreater(sum(map(len, recorded)), 0.8 * (robot.published - before))
 
-    @again_if_disturbed
     def test_the_end_of_ros_time(self) -> None:
         with MonitorListener() as listener, self.start_monitor() as monitor, \
                 SimulatedRobot() as robot:

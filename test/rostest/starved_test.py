@@ -28,6 +28,7 @@ def waited() -> float:
         return int(file.read().split('total=')[1].split()[0]) / 1e6
 
 
+@again_if_disturbed
 class StarvedTest(TrainedCase):
 
     def setUp(self) -> None:
@@ -35,7 +36,6 @@ class StarvedTest(TrainedCase):
         if not os.path.exists(PRESSURE):
             self.skipTest('this kernel does not tell its pressure: no ' + PRESSURE)
 
-    @again_if_disturbed
     def test_busy_loops_are_the_machines_fault(self) -> None:
         with driver(), base(), self.monitor(self.path('model'), detector='evidence'), \
                 MonitorListener() as listener:
@@ -59,9 +59,7 @@ class StarvedTest(TrainedCase):
                 self.assertEqual(said.component, '')
                 self.assertRegex(said.message,
                                  r'the machine has been starved for \d\.\d s \(load ')
-                await_condition('it is said on /diagnostics', lambda: any(
-                    status.level == DiagnosticStatus.WARN and 'starved' in status.message
-                    for status in listener.diagnostics('communication')), 20)
+                listener.await_diagnostics('communication', 'starved', DiagnosticStatus.WARN)
             finally:
                 for loop in loops:
                     loop.stop()

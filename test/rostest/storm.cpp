@@ -1,8 +1,8 @@
 // A node for tests that publishes much, or in bad style.
 //
 // Private parameters: ~topics (std_msgs/String on /storm0, /storm1, ...), ~rate [messages a
-// second, all together], ~burst (so many at a time), ~size [bytes of each], ~values (of the
-// messages: value0, value1, ..., in turn; 0: all are alike), ~seconds (then it ends; 0: never).
+// second, all together], ~burst (so many at a time), ~values (of the messages: value0, value1,
+// ..., in turn; 0: all are alike), ~seconds (then it ends; 0: never).
 
 #include <ros/ros.h>
 #include <std_msgs/String.h>
@@ -24,7 +24,6 @@ int main(int argc, char** argv) {
   const int values = parameters.param("values", 0);
   const double seconds = parameters.param("seconds", 0.0);
   std_msgs::String message;
-  message.data.assign(static_cast<std::size_t>(parameters.param("size", 0)), ' ');
   const ros::SteadyTime start = ros::SteadyTime::now();
   std::int64_t sent = 0;
   for (double now = 0; ros::ok() && (seconds == 0 || now < seconds);

@@ -77,9 +77,9 @@ def top(**environment: str) -> Terminal:
     return Terminal(path_of('top'), **environment)
 
 
+@again_if_disturbed
 class TopTest(MonitorCase):
 
-    @again_if_disturbed
     def test_it_shows_what_the_monitor_says_and_takes_keys(self) -> None:
         # Windows are long, since an alarm is held: a hiccup of a busy machine must not raise one.
         model = self.model(window=10**9)
@@ -119,7 +119,6 @@ class TopTest(MonitorCase):
                 await_condition('it is cleared', lambda: (
                     listener.alarms[-1].level == SelfAwareness.OK), 20)
 
-    @again_if_disturbed
     def test_a_monitor_that_hangs_is_stale_and_keys_go_on(self) -> None:
         with self.monitor(self.model()) as monitor, MonitorListener() as listener:
             with Talker('/a'), top() as terminal:

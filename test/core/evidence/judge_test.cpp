@@ -205,28 +205,24 @@ TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
   EXPECT_TRUE(judge->judge({}, 2 * kSecond, NameSuspects::kNever).suspects.empty());
   EXPECT_EQ(judge->judge({}, 2 * kSecond, NameSuspects::kIfUnusual).suspects.size(), 1U);
   EXPECT_TRUE(newJudge(std::nullopt)->judge(unknown, 0, NameSuspects::kAlways).suspects.empty());
+  // A is near its limit, but within its own range.
+  const std::unique_ptr<core::Judge> near = newJudge(limits_);
+  near->add({0, kA});
+  const Judgement beside = near->judge(unknown, 960 * kMillisecond, NameSuspects::kAlways);
+  EXPECT_GT(-*beside.score, model_->tuning().near_limit);
+  EXPECT_FALSE(beside.abnormal);
+  EXPECT_EQ(idsOf(beside.suspects), std::vector<EventId>{kC});
 }
 
-TEST_F(EvidenceJudgeTest, WhoIsWithinHisOwnRangeIsNoSuspectBesideAnUnknownEvent) {
-  limit(kOverdue, kA) = 1;
-  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
-  judge->add({0, kA});
-  const Window unknown{900 * kMillisecond, {{{950 * kMillisecond, kC}, true, {}}}};
-  // A is near its limit.
-  const Judgement judgement = judge->judge(unknown, 960 * kMillisecond, NameSuspects::kAlways);
-  EXPECT_GT(-*judgement.score, model_->tuning().near_limit);
-  EXPECT_FALSE(judgement.abnormal);
-  ASSERT_EQ(judgement.suspects.size(), 1U);
-  EXPECT_EQ(judgement.suspects[0].id, kC);
-}
-
-TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothing) {
+TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothingAndThoseOfAnotherModelAreRefused) {
   const std::unique_ptr<core::Judge> judge = newJudge(std::nullopt);
   judge->add({0, kA});
   const Judgement judgement = judgeAt(*judge, 3000 * kSecond);
   EXPECT_FALSE(judgement.score.has_value());
   EXPECT_FALSE(judgement.threshold.has_value());
   EXPECT_FALSE(judgement.abnormal || judgement.certain || judgement.suspicious);
+  limits_.tracks.pop_back();
+  EXPECT_THROW(newJudge(limits_), std::invalid_argument) << "those of another model";
 }
 
 TEST_F(EvidenceJudgeTest, WhatIsAcceptedIsNoEvidenceAndAllElseIs) {
@@ -405,12 +401,6 @@ TEST_F(EvidenceJudgeTest, WhoDoesNotSubscribeIsASuspicionAndHidesNobody) {
   EXPECT_FALSE(judgeAt(*judge, 102 * kSecond).suspicious);
 }
 
-TEST_F(EvidenceJudgeTest, RefusesLimitsOfAnotherModel) {
-  Limits few = limits_;
-  few.tracks.pop_back();
-  EXPECT_THROW(newJudge(few), std::invalid_argument);
-}
-
 class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
  protected:
   EvidenceJudgeOfStrangersTest() { heard_ = std::make_shared<Vocabulary>(model_->vocabulary()); }
@@ -458,12 +448,18 @@ TEST_F(EvidenceJudgeOfStrangersTest, AnUnknownSenderOnAKnownTopicIsTheFirstSuspe
   EXPECT_EQ(named[1].id, kB);
 }
 
-TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStranger) {
-  const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, 50 * kMillisecond);
-  ASSERT_EQ(named.size(), 2U);
-  EXPECT_EQ(named[0].id, kA);
-  EXPECT_EQ(named[0].reason.kind, Kind::kSilent);
-  EXPECT_EQ(heard_->at(named[1].id).source, "/rostopic");
+TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStrangerOfWhileRatesCount) {
+  const EventType stranger{"/rostopic", "/y", "T"};
+  for (const std::int64_t ago : {50 * kMillisecond, kSecond}) {
+    const std::vector<Suspect> named = suspectsAfter(stranger, ago);
+    ASSERT_EQ(named.size(), 2U);
+    EXPECT_EQ(named[0].id, kA);
+    EXPECT_EQ(named[0].reason.kind, Kind::kSilent);
+    EXPECT_EQ(heard_->at(named[1].id).source, "/rostopic");
+    EXPECT_TRUE(ago < kSecond ||
+                named[1].reason.words == "never seen in training, the last one 1.0 s ago");
+  }
+  EXPECT_EQ(suspectsAfter(stranger, 3 * kSecond).size(), 1U);
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, WhoWasThereLongBeforeIsNotNamedUnlessItComesBack) {
@@ -572,13 +568,6 @@ TEST_F(EvidenceJudgeOfStrangersTest, AFloodOfLinesOfANewLevelIsNews) {
   EXPECT_EQ(told, 5);
   log(50, 3 * kSecond);
   EXPECT_EQ(told, 5) << "with pauses, it is none";
-}
-
-TEST_F(EvidenceJudgeOfStrangersTest, ItIsSoForAsLongAsRatesCount) {
-  const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, kSecond);
-  ASSERT_EQ(named.size(), 2U);
-  EXPECT_EQ(named[1].reason.words, "never seen in training, the last one 1.0 s ago");
-  EXPECT_EQ(suspectsAfter({"/rostopic", "/y", "T"}, 3 * kSecond).size(), 1U);
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, WhoWasInTheGraphOfTheTrainingMayLogAnew) {

@@ -53,10 +53,7 @@ TEST_F(LanesTest, AColumnKeepsTheLargestOfItsWindows) {
   EXPECT_EQ(columns[0].track, delay);
   EXPECT_EQ(columns[1].shares[component(kA)], 0.25F);
   EXPECT_EQ(columns[1].shares[component(kB)], 0.125F);  // never heard
-}
-
-TEST_F(LanesTest, StretchesMustBeInOrder) {
-  EXPECT_THROW(Lanes(model_, {1, 0}), std::invalid_argument);
+  EXPECT_THROW(Lanes(model_, {1, 0}), std::invalid_argument) << "stretches are in order";
 }
 
 TEST_F(LanesTest, TheyAgreeWithTheScore) {

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "../../problem.h"
 #include "attributed.h"
 #include "recordings.h"
 #include "self_awareness/core/evidence/channel/model.h"
@@ -20,19 +21,9 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-template <typename Action>
-std::string errorOf(const Action& action) {
-  try {
-    action();
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
-}
-
 std::string errorOfSetting(const std::string& name, double value) {
   Tuning tuning;
-  const std::string error = errorOf([&] { set(tuning, name, value); });
+  const std::string error = problemOf([&] { set(tuning, name, value); });
   EXPECT_EQ(tuning == Tuning{}, !error.empty()) << "what is refused changes nothing";
   return error;
 }
@@ -81,7 +72,7 @@ TEST(EvidenceTuning, AnUnknownNumberIsRefusedAndItIsSaidWhereAllAreNamed) {
   const std::string told =
       "the method has no number 'least'; 'info --tuning' of a model names them all";
   EXPECT_EQ(errorOfSetting("least", 1), told);
-  EXPECT_EQ(errorOf([] { tuningNumber("least"); }), told);
+  EXPECT_EQ(problemOf([] { tuningNumber("least"); }), told);
 }
 
 TEST(EvidenceTuning, WhatWasNotSetByItsNameIsCheckedToo) {
@@ -89,7 +80,7 @@ TEST(EvidenceTuning, WhatWasNotSetByItsNameIsCheckedToo) {
   for (const TuningNumber& number : tuningNumbers()) {
     Tuning tuning;
     tuning.*number.value = std::nextafter(number.most, 2 * number.most);
-    EXPECT_EQ(errorOf([&] { tuning.validate(); }).find(number.name + " must be from "), 0U);
+    EXPECT_EQ(problemOf([&] { tuning.validate(); }).find(number.name + " must be from "), 0U);
   }
 }
 
@@ -128,7 +119,7 @@ TEST(EvidenceTuning, EveryEndOfARangeGivesLimitsOrSaysWhyNot) {
       set(tuning, number.name, end);
       const auto model = std::make_shared<Model>(watch(first, second, {}, tuning));
       LimitFinder finder(model, {kWindow, 5 * kSecond});
-      const std::string error = errorOf([&] {
+      const std::string error = problemOf([&] {
         for (const unsigned seed : {3U, 4U}) {
           finder.startRecording(model);
           addAll(finder, robot(seed));

@@ -197,6 +197,9 @@ TEST(Binning, RefusesImpossibleValues) {
   EXPECT_THROW(DelayStatistics(Binning{0, 0}), std::invalid_argument);
   EXPECT_THROW(DelayStatistics(Binning{-5, 0}), std::invalid_argument);
   EXPECT_THROW(DelayStatistics(Binning{10, -1}), std::invalid_argument);
+  DelayStatistics fine(Binning{5000000, 0});
+  EXPECT_THROW(fine.merge(DelayStatistics(Binning{10000000, 0})), std::invalid_argument);
+  EXPECT_THROW(Vocabulary({kA, kB, kA}), std::invalid_argument) << "a type that occurs twice";
 }
 
 TEST(DelayStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
@@ -212,16 +215,6 @@ TEST(DelayStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
   EXPECT_FALSE(sum == both);
   sum.merge(other);
   EXPECT_TRUE(sum == both);
-}
-
-TEST(DelayStatistics, RefusesToAddWhatWasBinnedDifferently) {
-  DelayStatistics fine(Binning{5000000, 0});
-  const DelayStatistics coarse(Binning{10000000, 0});
-  EXPECT_THROW(fine.merge(coarse), std::invalid_argument);
-}
-
-TEST(Vocabulary, RefusesATypeThatOccursTwice) {
-  EXPECT_THROW(Vocabulary({kA, kB, kA}), std::invalid_argument);
 }
 
 }  // namespace

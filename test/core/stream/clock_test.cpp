@@ -48,11 +48,41 @@ std::vector<Event> robot(const std::vector<Silence>& silences) {
   return inOrder(std::move(events));
 }
 
-TEST(FindClockSteps, ARobotThatGoesOnHasNone) {
+TEST(FindClockSteps, ARobotThatGoesOnPausesOrStartsHasNone) {
+  const std::int64_t goes_on = 47'770'000'000;
+  const auto waits = [&](const Event& event) {
+    return 30 * kSecond < event.stamp && event.stamp < goes_on;
+  };
   EXPECT_EQ(findClockSteps({}), Steps());
   EXPECT_EQ(findClockSteps({{5, 0}}), Steps());
   EXPECT_EQ(findClockSteps(robot({})), Steps());
   EXPECT_EQ(findClockSteps(robot({{30 * kSecond, kSecond / 4}})), Steps());
+  std::vector<Event> events = robot({});
+  events.erase(std::remove_if(events.begin(), events.end(), waits), events.end());
+  EXPECT_EQ(findClockSteps(events), Steps()) << "after a pause, timers come at another time";
+  events = robot({});
+  for (Event& event : events) {
+    event.stamp = waits(event) ? goes_on : event.stamp;
+  }
+  EXPECT_EQ(findClockSteps(events), Steps()) << "after an outage, what waited comes at once";
+  events.clear();
+  for (std::int64_t n = 0; n < 500; ++n) {
+    events.push_back({n * kSecond / 10 + (n > 200 ? 60 * kSecond : 0), 0});
+  }
+  EXPECT_EQ(findClockSteps(events), Steps()) << "one timer tells nothing";
+  events = robot({{30 * kSecond, 20 * kSecond}});
+  events.push_back({40 * kSecond, 3});
+  EXPECT_EQ(findClockSteps(inOrder(events)), Steps()) << "somebody goes on: others are silent";
+  events = robot({{0, 20 * kSecond}});
+  events.insert(events.begin(), {{0, 0}, {1, 1}, {2, 2}});
+  EXPECT_EQ(findClockSteps(events), Steps()) << "a start: some at once, all others a while after";
+  events = robot({});
+  events.push_back({130 * kSecond, 0});
+  EXPECT_EQ(findClockSteps(events), Steps()) << "an end, of which one last message comes later";
+  events = robot({});
+  const std::vector<Event> again = robot({{10 * kSecond, 2 * kLongestSilence}});
+  events.insert(events.end(), again.begin(), again.end());
+  EXPECT_EQ(findClockSteps(events), Steps()) << "stamps say these steps themselves";
 }
 
 TEST(FindClockSteps, FindsSilencesAfterWhichAllGoesOn) {
@@ -65,33 +95,6 @@ TEST(FindClockSteps, FindsSilencesAfterWhichAllGoesOn) {
             (Steps{50 * kSecond, 89 * kSecond, 1899 * kSecond}));
 }
 
-TEST(FindClockSteps, AfterAPauseTimersComeAtAnotherTime) {
-  std::vector<Event> events = robot({});
-  const auto pause = [](const Event& event) {
-    return 30 * kSecond < event.stamp && event.stamp < 47'770'000'000;
-  };
-  events.erase(std::remove_if(events.begin(), events.end(), pause), events.end());
-  EXPECT_EQ(findClockSteps(events), Steps());
-}
-
-TEST(FindClockSteps, AfterAnOutageWhatWaitedComesAtOnce) {
-  std::vector<Event> events = robot({});
-  for (Event& event : events) {
-    if (30 * kSecond < event.stamp && event.stamp < 47'770'000'000) {
-      event.stamp = 47'770'000'000;
-    }
-  }
-  EXPECT_EQ(findClockSteps(events), Steps());
-}
-
-TEST(FindClockSteps, OneTimerTellsNothing) {
-  std::vector<Event> events;
-  for (std::int64_t n = 0; n < 500; ++n) {
-    events.push_back({n * kSecond / 10 + (n > 200 ? 60 * kSecond : 0), 0});
-  }
-  EXPECT_EQ(findClockSteps(events), Steps());
-}
-
 TEST(FindClockSteps, WhatHappensOftenIsNormal) {
   std::vector<Silence> silences;
   for (std::int64_t n = 1; n <= 4; ++n) {
@@ -102,30 +105,6 @@ TEST(FindClockSteps, WhatHappensOftenIsNormal) {
   EXPECT_EQ(findClockSteps(robot(silences)).size(), 3U);
   silences.back().length = 3 * kSecond;
   EXPECT_EQ(findClockSteps(robot(silences)), Steps());
-}
-
-TEST(FindClockSteps, SomebodyWhoGoesOnMakesItASilenceOfOthers) {
-  std::vector<Event> events = robot({{30 * kSecond, 20 * kSecond}});
-  events.push_back({40 * kSecond, 3});
-  EXPECT_EQ(findClockSteps(inOrder(events)), Steps());
-}
-
-TEST(FindClockSteps, AStartIsNone) {
-  // Something is there at once, all others a while after.
-  std::vector<Event> events = robot({{0, 20 * kSecond}});
-  events.insert(events.begin(), {{0, 0}, {1, 1}, {2, 2}});
-  EXPECT_EQ(findClockSteps(events), Steps());
-  // Nor is the end of a robot of which one last message comes later.
-  events = robot({});
-  events.push_back({130 * kSecond, 0});
-  EXPECT_EQ(findClockSteps(events), Steps());
-}
-
-TEST(FindClockSteps, LeavesOutStepsThatStampsSayThemselves) {
-  std::vector<Event> events = robot({});
-  const std::vector<Event> again = robot({{10 * kSecond, 2 * kLongestSilence}});
-  events.insert(events.end(), again.begin(), again.end());
-  EXPECT_EQ(findClockSteps(events), Steps());
 }
 
 TEST(ClockSteps, LieBetweenTheEventsAroundThem) {

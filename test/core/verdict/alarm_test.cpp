@@ -184,11 +184,9 @@ TEST_F(AlarmsTest, WhereTheMachineIsBusyNobodyIsToBlame) {
   add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   addBusy({12, 26});
   expectBlamed("", Kind::kBusyMachine);
-}
-
-TEST_F(AlarmsTest, ABusyMachineDoesNotExcuseWhoDied) {
+  alarms_ = {};
   addBusy({12, 26}, {suspect(1, Kind::kSilent)});
-  expectBlamed("/b", Kind::kSilent);
+  expectBlamed("/b", Kind::kSilent);  // it does not excuse who died
   EXPECT_TRUE(alarms_.standing()->busy);
 }
 

@@ -30,6 +30,8 @@ TEST_F(DetectorLevelsTest, WhoStopTogetherAreANewModeOnceTheyStayAway) {
   told_->silent.reset();
   windows(21);
   EXPECT_EQ(changes_, 2);
+  told_->silent = Silent{};  // all of them
+  EXPECT_TRUE(abnormalWindow().suspicion && verdict_.silent) << "at once";
 }
 
 TEST_F(DetectorLevelsTest, AMachineThatIsBusyNowAndThenIsOneSuspicion) {
@@ -50,13 +52,6 @@ TEST_F(DetectorLevelsTest, AMachineThatIsBusyNowAndThenIsOneSuspicion) {
   told_->suspicious = false;
   windows(20);
   EXPECT_FALSE(verdict_.suspicion) << "others end sooner";
-}
-
-TEST_F(DetectorLevelsTest, AllWhoFallSilentAreToldAtOnce) {
-  start();
-  told_->silent = Silent{};
-  EXPECT_TRUE(abnormalWindow().suspicion);
-  EXPECT_TRUE(verdict_.silent);
 }
 
 TEST_F(DetectorLevelsTest, AfterAPauseTheJudgeSaysWhatHasSettled) {
@@ -217,14 +212,11 @@ TEST_F(DetectorLevelsTest, WhoIsNewIsToldWhileASuspicionStandsAndNoOtherSuspect)
   EXPECT_FALSE(window(kUnknownId).changed);
 }
 
-TEST_F(DetectorLevelsTest, UnknownEventsMayBeIgnored) {
+TEST_F(DetectorLevelsTest, UnknownEventsMayBeIgnoredOrAnAlarmAtOnceForAsLongAsTheyCome) {
   start(UnknownEvents::kIgnore);
   EXPECT_FALSE(window(kUnknownId).suspicion);
   EXPECT_EQ(verdict_.evidence, "");
   EXPECT_EQ(changes_, 0);
-}
-
-TEST_F(DetectorLevelsTest, UnknownEventsMayBeAnAlarmAtOnceForAsLongAsTheyCome) {
   start(UnknownEvents::kError);
   EXPECT_FALSE(window(0).alarm);
   for (int i = 0; i < 50; ++i) {
@@ -232,10 +224,6 @@ TEST_F(DetectorLevelsTest, UnknownEventsMayBeAnAlarmAtOnceForAsLongAsTheyCome) {
   }
   EXPECT_TRUE(verdict_.abnormal);
   EXPECT_EQ(verdict_.evidence, "unknown events");
-}
-
-TEST_F(DetectorLevelsTest, UnknownEventsAreToldBesideOtherEvidence) {
-  start();
   told_->evidence = "rate";
   EXPECT_EQ(window(kUnknownId).evidence, "rate, unknown events");
 }

@@ -15,6 +15,7 @@
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/verdict/persistence.h"
+#include "self_awareness/core/verdict/roc.h"
 
 namespace self_awareness::core {
 namespace {
@@ -124,15 +125,13 @@ TEST_F(DetectorTest, TotalSilenceIsAbnormalByTimeAlone) {
   ASSERT_TRUE(alarm.has_value());
   EXPECT_EQ(*alarm, 1010300 * kMillisecond);  // the third window without an event
   EXPECT_EQ(seen_.size(), 110U);
-}
-
-TEST_F(DetectorTest, SilenceMayBeIgnored) {
+  seen_.clear();
   Detector::Parameters parameters;
   parameters.silence_is_abnormal = false;
-  Detector detector = makeDetector(0.5, parameters);
-  feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
-  detector.advance(1020 * kSecond);
-  EXPECT_FALSE(firstAlarm().has_value());
+  Detector deaf = makeDetector(0.5, parameters);
+  feed(deaf, clockwork(1000 * kSecond, 1010 * kSecond, true));
+  deaf.advance(1020 * kSecond);
+  EXPECT_FALSE(firstAlarm().has_value()) << "it may be ignored";
 }
 
 TEST_F(DetectorTest, AStepOfTheClockStartsANewRecordingWithoutAnAlarm) {
@@ -236,6 +235,27 @@ TEST(Persistence, RefusesImpossibleValues) {
   EXPECT_THROW(Persistence({0, 5, 0}), std::invalid_argument);
   EXPECT_THROW(Persistence({6, 5, 0}), std::invalid_argument);
   EXPECT_THROW(Persistence({1, 5, -1}), std::invalid_argument);
+}
+
+TEST(Roc, LevelIsTheLargestCutoffWithSoFewFalsePositives) {
+  const Roc roc({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, {});
+  EXPECT_EQ(roc.level(0.2).cutoff, 2.5);
+  EXPECT_EQ(roc.level(0.2).false_positive_rate, 0.2);
+  EXPECT_TRUE(std::isnan(roc.level(0.2).true_positive_rate));
+  EXPECT_EQ(roc.level(0.05).cutoff, 1);  // eq. 5 is strict: no normal score lies below it
+  EXPECT_EQ(roc.level(0.05).false_positive_rate, 0);
+  EXPECT_EQ(roc.level(1).cutoff, std::numeric_limits<double>::infinity());
+}
+
+TEST(Roc, NeedsWhatItIsAskedFor) {
+  EXPECT_THROW(Roc({}, {1}), std::invalid_argument);
+  EXPECT_THROW(Roc({std::nan("")}, {1}), std::invalid_argument);
+  const Roc normal_only({1, 2}, {});
+  EXPECT_THROW(normal_only.youden(), std::logic_error);
+  EXPECT_THROW(normal_only.closest(), std::logic_error);
+  EXPECT_THROW(normal_only.level(-0.1), std::invalid_argument);
+  EXPECT_THROW(normal_only.level(std::nan("")), std::invalid_argument);
+  EXPECT_TRUE(std::isnan(normal_only.auc()));
 }
 
 }  // namespace

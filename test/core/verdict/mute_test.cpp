@@ -85,7 +85,7 @@ TEST_F(MutesTest, WhoFailsBesideAnAlarmOfBeforeTheStartIsTold) {
   EXPECT_FALSE(stands(resumed)) << "the same again";
 }
 
-TEST_F(MutesTest, ATopicOrAKindIsMuted) {
+TEST_F(MutesTest, ATopicOrAKindOrAllIsMuted) {
   mutes_.add(mute("", "/scan"));
   EXPECT_TRUE(stands(alarm({0})));
   EXPECT_FALSE(stands(alarm({2})));
@@ -94,20 +94,14 @@ TEST_F(MutesTest, ATopicOrAKindIsMuted) {
   EXPECT_FALSE(stands(slow));
   slow->kind = slow->suspects[0].reason.kind = Kind::kSlow;
   EXPECT_TRUE(stands(slow));
-}
-
-TEST_F(MutesTest, WithoutACulpritTheKindCounts) {
-  std::optional<Alarm> busy = alarm({});
-  busy->kind = Kind::kBusyMachine;
   mutes_.add(mute("/player"));
+  std::optional<Alarm> busy = alarm({});  // of nobody
+  busy->kind = Kind::kBusyMachine;
   EXPECT_FALSE(stands(busy));
   mutes_.add(mute("", "", Kind::kBusyMachine));
   EXPECT_TRUE(stands(busy));
-}
-
-TEST_F(MutesTest, MaintenanceMutesAll) {
-  mutes_.add(mute(""));
-  EXPECT_TRUE(mutes_.list()[0].mutesAll());
+  EXPECT_FALSE(stands(alarm({0, 1, 2})));
+  EXPECT_TRUE(mutes_.add(mute(""))->mutesAll()) << "maintenance";
   EXPECT_TRUE(stands(alarm({0, 1, 2})));
   EXPECT_TRUE(stands(alarm({})));
 }

@@ -72,36 +72,6 @@ class ModelMergeTest : public testing::Test {
   TrainedModel both_;
 };
 
-TEST_F(ModelMergeTest, CountsAddUpToThoseOfATrainingOnBoth) {
-  merge(first_, second_);
-  EXPECT_EQ(first_.statistics.vocabulary().types(), (Types{kScan, kMap, kPose}));
-  EXPECT_TRUE(first_.statistics == both_.statistics);
-  EXPECT_TRUE(first_.evidence[0] == both_.evidence[0]);
-  EXPECT_TRUE(first_.evidence[1] == both_.evidence[1]);
-  ASSERT_EQ(first_.recordings.size(), 2U);
-  EXPECT_EQ(first_.recordings[1].fingerprint, 7001U);
-}
-
-TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
-  first_.graph.connect("/a", "/x", "/b");
-  second_.graph.place("/b", "base");
-  second_.graph.addUnheard({"/b", "/debug"});
-  first_.graph.addLasting({"/b", "/x"}, 2);
-  second_.graph.addLasting({"/b", "/x"}, 1);
-  second_.graph.connect("/a", "/x", "/c");
-  second_.graph.connect("/b", "/y", "/c");
-  first_.stamp = 3;
-  second_.stamp = 2;
-  merge(first_, second_);
-  EXPECT_EQ(first_.graph.hostOf("/b"), "base");
-  EXPECT_EQ(first_.graph.unheard().size(), 1U);
-  EXPECT_EQ(first_.graph.lasting().at({"/b", "/x"}), 3U) << "recordings that had it";
-  EXPECT_TRUE(first_.graph.edges() ==
-              (std::set<core::SourceGraph::Edge>{
-                  {"/a", "/x", "/b"}, {"/a", "/x", "/c"}, {"/b", "/y", "/c"}}));
-  EXPECT_EQ(first_.stamp, 3);
-}
-
 TEST_F(ModelMergeTest, WhatWasLearnedUnderOtherNamesIsRenamed) {
   TrainedModel numbered = first_;
   numbered.statistics = core::paper::DelayStatistics(first_.statistics.binning());
@@ -120,35 +90,6 @@ TEST_F(ModelMergeTest, WhatWasLearnedUnderOtherNamesIsRenamed) {
   EXPECT_TRUE(numbered.statistics == both_.statistics);
   EXPECT_TRUE(numbered.evidence[0] == both_.evidence[0]);
   EXPECT_THROW(rename(first_, {{".*", "/one"}}), std::invalid_argument);
-}
-
-TEST_F(ModelMergeTest, TheTuningIsKeptUnlessTheyDiffer) {
-  core::evidence::Tuning tuning;
-  tuning.least_effect = 0.003;
-  tuning.without = {"slower"};
-  first_.tuning = second_.tuning = tuning;
-  TrainedModel other = both_;
-  other.tuning.without = {"slower"};
-  first_.watch();
-  merge(first_, second_);
-  first_.watch();
-  EXPECT_TRUE(first_.tuning == tuning);
-  EXPECT_TRUE(first_.watched.tuning == tuning);
-  merge(first_, other);
-  first_.watch();
-  EXPECT_TRUE(first_.tuning == core::evidence::Tuning{}) << "those of this version";
-  EXPECT_TRUE(first_.watched.tuning == core::evidence::Tuning{});
-}
-
-TEST_F(ModelMergeTest, WhatHoldsForOneModelOnlyIsDropped) {
-  first_.paper_calibration = core::paper::Calibration();
-  first_.calibration = core::Calibration();
-  first_.findings.resize(2);
-  second_.findings.resize(3);
-  merge(first_, second_);
-  EXPECT_FALSE(first_.threshold());
-  EXPECT_FALSE(first_.limits());
-  EXPECT_TRUE(first_.findings.empty()) << "what recordings showed to each other";
 }
 
 TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {

@@ -243,6 +243,22 @@ TEST(DiagnosticStatus, SaysHowSoonADeathIsFoundAlsoWhileItIsNeeded) {
   EXPECT_EQ(found(), "0.6 while it is needed");
   coverage.found_when_asked.reset();
   EXPECT_EQ(found(), "not watched");
+  coverage.accepted = true;
+  EXPECT_EQ(found(), "not watched: accepted");
+  EXPECT_EQ(componentsOf(state).front().message, "heard; not watched: accepted");
+}
+
+TEST(DiagnosticStatus, SaysWhoIsNamedOrAbsentAndItsRates) {
+  CommunicationState state = largeRobot();
+  const std::string name = state.coverage.front().component;
+  EXPECT_EQ(saidOfFirst(state, name + "/status"), "20.4 of 20 Hz");
+  raise(state, 3);
+  EXPECT_EQ(componentsOf(state).front().level, DiagnosticStatus::ERROR);
+  EXPECT_TRUE(has(componentsOf(state).front().message, "/image_raw: silent for 3.31 s"));
+  state.last.level = DiagnosticStatus::OK;
+  state.optional = {name};
+  state.heard.components.at(name).last_heard.reset();
+  EXPECT_EQ(componentsOf(state).front().message, "optional (absent)");
 }
 
 TEST(DiagnosticStatus, SaysWithWhatLateAnswersAreFound) {

@@ -208,24 +208,38 @@ TEST(Attributes, NormalOperationIsQuiet) {
   EXPECT_FALSE(alarmIn(*model, robot(source, 20, 3600 * kSecond)));
 }
 
-TEST(Attributes, OneMessageThatIsOddIsNoAlarm) {
+TEST(Attributes, OneThatIsOddAndOlderRecordingsAndRestartsAreNoAlarm) {
   const auto model = learned(Source{});
-  bool first = true;
-  const Events events = faulty(robot({}, 10), [&](Event& event, std::int64_t) {
-    if (first) {
-      event.attributes = {ageClass(5 * kSecond), sizeClass(1), Attributes::Step::kLostMany, true};
-    }
-    first = false;
-  });
-  EXPECT_FALSE(alarmIn(*model, events));
+  const std::vector<std::function<Attributes(const Attributes&, std::int64_t)>> changes{
+      [](const Attributes& usual, std::int64_t since) {
+        return since < 100 * kMillisecond ? Attributes{ageClass(5 * kSecond), sizeClass(1),
+                                                       Attributes::Step::kLostMany, true}
+                                          : usual;
+      },
+      [](const Attributes& /*usual*/, std::int64_t /*since*/) { return Attributes{}; },
+      [](Attributes each, std::int64_t since) {
+        each.step =
+            since / (100 * kMillisecond) % 20 == 0 ? Attributes::Step::kRestart : each.step;
+        return each;
+      }};
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    EXPECT_FALSE(alarmIn(*model, faulty(robot({}, 10), [&](Event& event, std::int64_t since) {
+      event.attributes = changes[k](event.attributes, since);
+    }))) << k;
+  }
 }
 
-TEST(Attributes, AreOffWhereTrainingKnowsNothingOfThem) {
+TEST(Attributes, AreOffWhereTrainingKnowsNothingOfThemAndOtherLimitsStay) {
   const auto model = learned(fourStarts(withoutAttributes));
   for (const char* channel : {kAge, kLost, kSize, kFrozen}) {
     EXPECT_FALSE(watches(*model, channel)) << channel;
   }
   EXPECT_FALSE(alarmIn(*model, robot({}, 10))) << "what is known now says nothing";
+  const Limits without = *model->limits();
+  Limits with = *learned(Source{})->limits();
+  ASSERT_LT(without.tracks.size(), with.tracks.size());
+  with.tracks.resize(without.tracks.size());
+  expectSameLimits(without, with);
 }
 
 TEST(Attributes, AreOffWhereTrainingCannotTellWhatIsUsual) {
@@ -248,20 +262,6 @@ TEST(Attributes, AreOffWhereTrainingCannotTellWhatIsUsual) {
     EXPECT_FALSE(watches(*model, channel)) << k;
     EXPECT_TRUE(watches(*model, channel, kB)) << k;
   }
-}
-
-TEST(Attributes, OfOlderRecordingsAreNotMissed) {
-  const auto model = learned(Source{});
-  EXPECT_FALSE(alarmIn(
-      *model, faulty(robot({}, 10), [](Event& event, std::int64_t) { event.attributes = {}; })));
-}
-
-TEST(Attributes, DoNotChangeTheLimitsOfOthers) {
-  const Limits one = *learned(fourStarts(withoutAttributes))->limits();
-  Limits other = *learned(Source{})->limits();
-  ASSERT_LT(one.tracks.size(), other.tracks.size());
-  other.tracks.resize(one.tracks.size());
-  expectSameLimits(one, other);
 }
 
 TEST(Age, AStampThatIsMissingIsFound) {
@@ -317,15 +317,6 @@ TEST(Lost, TheAlarmEndsSoonAfterTheLosses) {
   });
   EXPECT_GT(lengthOfAlarms(*model, events), 20);
   EXPECT_LT(lengthOfAlarms(*model, events), 27) << "the hold time is 5 s";
-}
-
-TEST(Lost, ARestartIsNoLoss) {
-  const auto model = learned(Source{});
-  EXPECT_FALSE(alarmIn(*model, faulty(robot({}, 10), [](Event& event, std::int64_t since) {
-    if (since / (100 * kMillisecond) % 20 == 0) {
-      event.attributes.step = Attributes::Step::kRestart;
-    }
-  })));
 }
 
 TEST(Size, IsOffWhereHalvesOfTheTrainingDiffer) {
@@ -441,19 +432,6 @@ TEST(Lost, WhatIsLostFromPauseToPauseAddsUp) {
 
 double limitOf(const core::Model& model, const std::string& channel) {
   return model.limits()->tracks.at(indexOf(model.watched.tracks, channel, kA, kA));
-}
-
-TEST(Start, AFirstStampThatIsOddIsForgotten) {
-  const auto usual = learned(Source{});
-  for (const std::uint8_t age : {Attributes::kZeroStamp, ageClass(-600 * kSecond)}) {
-    const auto model = learned(recordingsWhere([&](Event& event, std::size_t number) {
-      if (number < 3) {
-        event.attributes.age = age;
-      }
-    }));
-    ASSERT_TRUE(watches(*model, kAge)) << +age;
-    EXPECT_NEAR(limitOf(*model, kAge), limitOf(*usual, kAge), 0.01) << +age;
-  }
 }
 
 TEST(Age, AFewMessagesMayLackAStamp) {

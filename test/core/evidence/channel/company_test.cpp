@@ -82,11 +82,6 @@ TEST_F(CompanyTest, PausesOfASecondAreCompanyToo) {
   EXPECT_FALSE(watches(kA, kC));
 }
 
-TEST_F(CompanyTest, PausesOfOneStartMayBeChance) {
-  learn(countsOf({modes(kStart)}), countsOf({modes(kStart + kSecond)}));
-  EXPECT_FALSE(watches(kA, kB));
-}
-
 TEST_F(CompanyTest, OtherPausesAreNoCompany) {
   const auto start = [](std::int64_t begin, std::int64_t session) {
     return countsOf({later(together({inSessions(kA, 0, kFast, kSession),
@@ -96,6 +91,8 @@ TEST_F(CompanyTest, OtherPausesAreNoCompany) {
   learn(start(kStart, kSession * 3 / 4), start(2 * kStart, kSession / 2));
   EXPECT_FALSE(watches(kA, kB));
   EXPECT_FALSE(watches(kB, kA));
+  learn(countsOf({modes(kStart)}), countsOf({modes(kStart + kSecond)}));
+  EXPECT_FALSE(watches(kA, kB)) << "those of one start may be chance";
 }
 
 TEST_F(CompanyTest, WhoseMessagesItIsSentByFallsSilentWithIt) {
@@ -216,6 +213,9 @@ TEST_F(ModeCompanyTest, WhoPausesInOtherModesIsInCompanyWithOne) {
   EXPECT_FALSE(watches(kPlan, kDocked));
   EXPECT_FALSE(watches(kImu, kDriving)) << "it does not pause";
   EXPECT_FALSE(watches(kDriving, kPlan)) << "a mode cannot be silent";
+  // It has the least limit of who comes every second.
+  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
+  EXPECT_EQ(model_->expectation(track_).timeUntil(track_, 4), 4.0 * kSecond);
 }
 
 TEST_F(ModeCompanyTest, WhoHearsItOrTellsItIsInCompanyAsWell) {
@@ -293,12 +293,6 @@ TEST_F(ModeCompanyTest, WhatIsForgottenBeginsAnew) {
   scorer_->forget(kDriving);
   EXPECT_EQ(evidenceAt(10 * kSecond), 0);
   EXPECT_EQ(evidenceAt(11 * kSecond), 1);
-}
-
-TEST_F(ModeCompanyTest, ItHasTheLeastLimitOfWhoComesEverySecond) {
-  learn();
-  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
-  EXPECT_EQ(model_->expectation(track_).timeUntil(track_, 4), 4.0 * kSecond);
 }
 
 /// What a model learns of starts of this robot, and what it says then.

@@ -95,30 +95,21 @@ TEST_F(OwedTest, SeriesOfRequestsAreCounted) {
 
 TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
   constexpr std::int64_t kGap = 8 * kSecond;
-  learn([](unsigned seed) {
-    const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
-    return together({asked, answers(kB, fourOfFive(asked), kGap / 10)});
+  const auto asked = [](unsigned seed) { return irregular(kA, 0, 400 * kGap, kGap, seed); };
+  learn([&](unsigned seed) {
+    return together({asked(seed), answers(kB, fourOfFive(asked(seed)), kGap / 10)});
   });
   EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
-}
-
-TEST_F(OwedTest, WhereAnswersOfAnotherOneFailAllRequestsAreCounted) {
   // B answers always, and C four times of five.
-  constexpr std::int64_t kGap = 8 * kSecond;
-  learn([](unsigned seed) {
-    const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
-    return together(
-        {asked, answers(kB, asked, kGap / 10), answers(kC, fourOfFive(asked), kGap / 8)});
+  learn([&](unsigned seed) {
+    return together({asked(seed), answers(kB, asked(seed), kGap / 10),
+                     answers(kC, fourOfFive(asked(seed)), kGap / 8)});
   });
   ASSERT_LT(indexOf(model_->tracks(), kDeadlines, kC, kA), model_->tracks().size());
   EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
-}
-
-TEST_F(OwedTest, ARequestThatTheNextOneOvertakesIsNoneWithoutAnAnswer) {
-  constexpr std::int64_t kGap = 8 * kSecond;
-  learn([](unsigned seed) {
-    const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
-    return together({asked, answers(kB, asked, kGap * 3 / 10)});
+  // A request that the next one overtakes is none without an answer.
+  learn([&](unsigned seed) {
+    return together({asked(seed), answers(kB, asked(seed), kGap * 3 / 10)});
   });
   EXPECT_GT(missRate(model_->statistics().type(kA).gaps, model_->statistics().answers(kA, kB)),
             model_->tuning().rare_misses);

@@ -144,7 +144,10 @@ TEST_F(PairsTest, UnusualDelaysThatPassedAreForgotten) {
 }
 
 TEST_F(PairsTest, WithoutUnusualDelaysTheLastOneIsTold) {
-  EXPECT_EQ(suspect().reason.words, "at unusual delays after /a /x T");
+  const Reason none = suspect().reason;
+  EXPECT_EQ(none.words, "at unusual delays after /a /x T");
+  EXPECT_EQ(none.kind, Kind::kOutOfOrder);
+  EXPECT_TRUE(std::isnan(none.value)) << "it says no number";
   add({now_, kB});  // after no A
   EXPECT_EQ(suspect().reason.of, 0U);
   askUsually(10);
@@ -245,32 +248,18 @@ std::string wordsOf(const std::vector<double>& unusual, const std::string& other
 }
 
 TEST(DescribeDelays, SaysHowMuchLaterHowOftenAndSinceWhen) {
-  EXPECT_EQ(wordsOf({0.0471, 0.0471, 0.0471}, "/a /x T", Kind::kLate),
-            "2.1 ms later than usual 3 times of 6 after /a /x T in the last 12.0 s, usually "
-            "0.045 s");
-  EXPECT_EQ(wordsOf({0.0429, 0.0429}, "/a /x T", Kind::kEarly),
-            "2.1 ms earlier than usual 2 times of 4 after /a /x T in the last 12.0 s, usually "
-            "0.045 s");
-  EXPECT_EQ(wordsOf({0.245}, "/a", Kind::kLate).rfind("200 ms later than usual 1 time of 2 ", 0),
-            0U);
-  EXPECT_EQ(wordsOf({3.045}, "/a", Kind::kLate).rfind("3.00 s later than usual 1 time of 2 ", 0),
-            0U);
-}
-
-TEST(DescribeDelays, SomeEarlierAndSomeLaterAreScattered) {
-  EXPECT_EQ(
-      wordsOf({0.033, 0.057, 0.033, 0.057}, "/a", Kind::kOutOfOrder),
-      "12.0 ms earlier or later than usual 4 times of 8 after /a in the last 12.0 s, usually "
-      "0.045 s");
-}
-
-TEST(DescribeDelays, WithoutAnyItSaysNoNumber) {
-  Reason reason;
-  reason.after = "/a /x T";
-  describeDelays({}, 100, 30e6, kSecond, reason);
-  EXPECT_EQ(reason.kind, Kind::kOutOfOrder);
-  EXPECT_TRUE(std::isnan(reason.value));
-  EXPECT_EQ(reason.words, "at unusual delays after /a /x T");
+  const std::string since = " after /a /x T in the last 12.0 s, usually 0.045 s";
+  const auto said = [&](const std::vector<double>& unusual, Kind kind) {
+    return wordsOf(unusual, "/a /x T", kind);
+  };
+  EXPECT_EQ(said({0.0471, 0.0471, 0.0471}, Kind::kLate),
+            "2.1 ms later than usual 3 times of 6" + since);
+  EXPECT_EQ(said({0.0429, 0.0429}, Kind::kEarly),
+            "2.1 ms earlier than usual 2 times of 4" + since);
+  EXPECT_EQ(said({0.245}, Kind::kLate), "200 ms later than usual 1 time of 2" + since);
+  EXPECT_EQ(said({3.045}, Kind::kLate), "3.00 s later than usual 1 time of 2" + since);
+  EXPECT_EQ(said({0.033, 0.057, 0.033, 0.057}, Kind::kOutOfOrder),
+            "12.0 ms earlier or later than usual 4 times of 8" + since);
 }
 
 }  // namespace

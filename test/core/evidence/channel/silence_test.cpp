@@ -14,11 +14,6 @@ namespace {
 
 class SilenceTest : public FollowedTest {
  protected:
-  // At the end of a window so long after the last A; the robot is not silent.
-  double overdueAt(std::int64_t age) {
-    add({now_ + age, kB});
-    return scorer_.closeWindow(now_ + age)[overdue_];
-  }
   std::size_t overdue_ = track(kOverdue, kA, kA);
 };
 
@@ -26,15 +21,6 @@ TEST_F(SilenceTest, TheScorerReturnsTheGapOfTheType) {
   EXPECT_EQ(scorer_.add({now_, kA}), std::nullopt);
   EXPECT_EQ(scorer_.add({now_ + 5, kB}), std::nullopt);
   EXPECT_EQ(scorer_.add({now_ + 7, kA}), 7);
-}
-
-TEST_F(SilenceTest, IsCertainOnceItHasLastedAWindowLonger) {
-  const double limit = 1;
-  add({now_, kA});
-  EXPECT_GT(overdueAt(kSecond + kWindow - kMillisecond), limit);
-  EXPECT_FALSE(scorer_.isCertain(overdue_, limit));
-  EXPECT_GT(overdueAt(kSecond + kWindow + kMillisecond), limit);
-  EXPECT_TRUE(scorer_.isCertain(overdue_, limit));
 }
 
 TEST_F(SilenceTest, WhatNeverPausedHasNoLimit) {

@@ -107,19 +107,6 @@ TEST(AttributeCounts, AStartIsThatOfTheRecording) {
   EXPECT_EQ(counts.type(kA).attributes.counted(), 1000U);
 }
 
-TEST(AttributeCounts, AddUp) {
-  Source source;
-  source.spread = 1;
-  source.repeats = true;
-  const Events one = messages(kA, kStart, kStart + 50 * kSecond, source, 1);
-  const Events other = later(messages(kA, kStart, kStart + 100 * kSecond, source, 2));
-  Statistics sum = countsOf({one}, 1);
-  sum.merge(countsOf({other}, 1));
-  EXPECT_EQ(sum.type(kA).attributes, countsOf({one, other}, 1).type(kA).attributes);
-  EXPECT_TRUE(sum == countsOf({one, other}, 1));
-  EXPECT_FALSE(sum == countsOf({one, one}, 1));
-}
-
 TEST(ClassCounts, QuantilesAreClasses) {
   const ClassCounts counts{{3, 1}, {7, 98}, {9, 1}};
   EXPECT_EQ(total(counts), 100U);

@@ -31,7 +31,12 @@ Events randomEvents(unsigned seed, EventId first, EventId last) {
   std::int64_t stamp = kSecond;
   for (int i = 0; i < 2000; ++i) {
     stamp += static_cast<std::int64_t>(random() % 30000000);
-    events.push_back({stamp, static_cast<EventId>(first + random() % (last - first + 1))});
+    events.push_back({stamp, static_cast<EventId>(first + random() % (last - first + 1)), {}});
+    events.back().attributes.age = ageClass(static_cast<std::int64_t>(random() % 30000000));
+    events.back().attributes.size = sizeClass(random() % 1000);
+    events.back().attributes.same = random() % 2 == 0;
+    events.back().attributes.step =
+        random() % 9 == 0 ? Attributes::Step::kLostOne : Attributes::Step::kNext;
   }
   return events;
 }
@@ -85,6 +90,8 @@ TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
   EXPECT_EQ(counts.type(kB).rate_squares, 2U);
   EXPECT_NEAR(counts.rateVariance(kA), 19.0 / 3 - 7.0 / 3 * 7 / 3, 1e-12);
   EXPECT_EQ(counts.dispersion(kA), 1) << "a timer varies less than chance";
+  EXPECT_THROW(Trainer(counts, 0), std::invalid_argument);
+  EXPECT_THROW(Trainer(counts, -kWindow), std::invalid_argument);
 }
 
 TEST(Statistics, TenAtOnceSayAsMuchAsOne) {
@@ -124,12 +131,6 @@ TEST(EvidenceTrainer, WhatARecordingCutsOffIsNoGap) {
                           timer(kC, 20 * kSecond, 60 * kSecond, kSecond)})});
   EXPECT_EQ(counts.recordings()[0].longest_gaps,
             (std::vector<std::int64_t>{kSecond, kSecond, kSecond}));
-}
-
-TEST(EvidenceTrainer, RefusesAWindowOfNoLength) {
-  Statistics counts;
-  EXPECT_THROW(Trainer(counts, 0), std::invalid_argument);
-  EXPECT_THROW(Trainer(counts, -kWindow), std::invalid_argument);
 }
 
 TEST(EvidenceTrainer, WhatCameBeforeOnlyTellsWhenItCameFirst) {
@@ -188,6 +189,7 @@ TEST(EvidenceStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
   const Events second = randomEvents(2, kB, kC);
   Statistics sum = countsOf({first});
   const Statistics both = countsOf({first, second});
+  EXPECT_GT(both.type(kB).attributes.known(), sum.type(kB).attributes.known());
   EXPECT_FALSE(sum == both);
   sum.merge(countsOf({second}));
   EXPECT_TRUE(sum == both);

@@ -53,6 +53,7 @@ TEST_F(SilentTogetherTest, AComputerOfWhichNobodyIsHeardIsFound) {
 TEST_F(SilentTogetherTest, ItIsNotFoundWhereOneOfItsNodesIsHeard) {
   EXPECT_FALSE(find({kAgo, kAgo, 0, 0, 0}));
   EXPECT_FALSE(find({kAgo, kAgo, kSecond, 0, 0})) << "the slow one may yet come";
+  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}, 0.5)) << "far from their limits, they prove nothing";
   moment_->strangers["/new"] = kSecond;
   graph_->place("/new", "base");
   EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}))
@@ -63,10 +64,13 @@ TEST_F(SilentTogetherTest, WhoFellSilentLongBeforeTheOthersDidNotDoSoWithThem) {
   const std::optional<Silent> on_host = find({2 * kAgo, kAgo, kAgo, 0, 0});
   ASSERT_TRUE(on_host);
   EXPECT_EQ(on_host->components, (Strings{"/battery", "/imu"}));
-  const std::optional<Silent> all = find({2 * kAgo, kAgo, kAgo, kAgo, kAgo});
-  ASSERT_TRUE(all);
-  EXPECT_TRUE(all->hosts.empty());
-  EXPECT_EQ(all->components, (Strings{"/battery", "/camera", "/faces", "/imu"}));
+  for (const bool before : {true, false}) {
+    const std::optional<Silent> all = find({before ? 2 * kAgo : kAgo, kAgo, kAgo, kAgo, kAgo});
+    ASSERT_TRUE(all);
+    EXPECT_TRUE(all->hosts.empty()) << "nobody is heard";
+    EXPECT_EQ(all->components.size(), before ? 4U : 5U);
+    EXPECT_NE(all->has("/laser"), before);
+  }
 }
 
 TEST_F(SilentTogetherTest, AMomentWithoutTheOthersTakesNobodysDeathAway) {
@@ -76,17 +80,6 @@ TEST_F(SilentTogetherTest, AMomentWithoutTheOthersTakesNobodysDeathAway) {
     graph_->place(type.source, "");
   }
   EXPECT_FALSE(find({kAgo, kAgo, kAgo, kAgo, 2 * kSecond})) << "one alone";
-}
-
-TEST_F(SilentTogetherTest, WhoIsFarFromItsLimitProvesNothing) {
-  EXPECT_FALSE(find({kAgo, kAgo, kAgo, 0, 0}, 0.5));
-}
-
-TEST_F(SilentTogetherTest, WhereNobodyIsHeardItIsAll) {
-  const std::optional<Silent> silent = find({kAgo, kAgo, kAgo, kAgo, kAgo});
-  ASSERT_TRUE(silent);
-  EXPECT_TRUE(silent->hosts.empty());
-  EXPECT_EQ(silent->components.size(), 5U);
 }
 
 TEST_F(SilentTogetherTest, WithoutComputersOnlyAllAreSilentTogether) {

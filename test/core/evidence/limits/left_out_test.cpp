@@ -69,35 +69,22 @@ TEST(LeftOut, TheHighestRateIsThatOfRobotsAndOfWhatOneShows) {
 
 TEST(GapTail, IsWhatFewPausesLetExpect) {
   // Two pauses in two hours, 15 longer on average.
-  const GapTail tail({30, 20, 10, 5}, 2, 10, 0, 2);
-  EXPECT_DOUBLE_EQ(tail.age(0.25), 40) << "(1 + 30 / (2 * 15)) to the power of -2";
-  EXPECT_DOUBLE_EQ(tail.age(5), 10);
-}
-
-TEST(GapTail, IsExponentialWhereManySamplesTellIt) {
-  const GapTail tail({30, 20, 10, 5}, 2, 10, 0, 1e9);
-  EXPECT_NEAR(tail.age(std::exp(-1)), 25, 1e-4);
-}
-
-TEST(GapTail, IsTheLongerTheFewerSamplesTellIt) {
-  const GapTail tail({30, 20, 10, 5}, 2, 10, 0, 1);
-  EXPECT_DOUBLE_EQ(tail.age(0.5), 25) << "1 / (1 + 15 / 15)";
-}
-
-TEST(GapTail, KnowsSilencesThatRecordingsCutOff) {
-  const GapTail tail({30, 20, 10, 5}, 2, 10, 30, 2);  // 30 more on average of the two
-  EXPECT_DOUBLE_EQ(tail.age(0.25), 70);
+  const auto age = [](double cut_off, double samples, double rate) {
+    return GapTail({30, 20, 10, 5}, 2, 10, cut_off, samples).age(rate);
+  };
+  EXPECT_DOUBLE_EQ(age(0, 2, 0.25), 40) << "(1 + 30 / (2 * 15)) to the power of -2";
+  EXPECT_DOUBLE_EQ(age(0, 2, 5), 10);
+  EXPECT_DOUBLE_EQ(age(0, 1, 0.5), 25) << "longer: fewer samples tell it; 1 / (1 + 15 / 15)";
+  EXPECT_NEAR(age(0, 1e9, std::exp(-1)), 25, 1e-4) << "exponential where many do";
+  EXPECT_DOUBLE_EQ(age(30, 2, 0.25), 70) << "30 more on average, which recordings cut off";
+  EXPECT_EQ(GapTail({9, 8, 7}, 1, 10, 0, 2).age(0.1), 0) << "no gap is longer than usual";
+  EXPECT_EQ(GapTail({}, 1, 10, 0, 2).age(0.1), 0);
 }
 
 TEST(GapTail, BeginsWithTheShortestOfThoseThatAreKeptIfAllArePauses) {
   const GapTail tail({30, 20, 16}, 1, 10, 0, 3);
   EXPECT_DOUBLE_EQ(tail.age(3), 16);
   EXPECT_DOUBLE_EQ(tail.age(3.0 / 8), 34) << "16 + 18 (8 to the power of 1/3, minus 1)";
-}
-
-TEST(GapTail, WhereNoGapIsLongerThanUsualThereIsNone) {
-  EXPECT_EQ(GapTail({9, 8, 7}, 1, 10, 0, 2).age(0.1), 0);
-  EXPECT_EQ(GapTail({}, 1, 10, 0, 2).age(0.1), 0);
 }
 
 }  // namespace

@@ -92,12 +92,6 @@ TEST(NumberOfStarts, WhenTheRobotWasStartedTellsStartsApart) {
       << "of the others it is not known";
 }
 
-TEST(NumberOfStarts, AStartIsOfOneRobot) {
-  const std::vector<Span> spans{
-      {0, 10, 5, "r1"}, {0, 10, 5, "r2"}, {2, 10, 0, "r1"}, {2, 10, 0, "r2"}, {3, 10, 0, "r2"}};
-  EXPECT_EQ(startsOf(spans, kSameStart), (std::vector<std::size_t>{0, 1, 2, 3, 3}));
-}
-
 TEST(Samples, AreRobotsWhereTheyAreSeveralElseStarts) {
   EXPECT_EQ(samplesOf({{0, 10, 1, "r1"}, {0, 10, 2, "r1"}, {0, 10, 2, "r2"}}, kSameStart),
             (std::vector<std::size_t>{0, 0, 1}));
@@ -106,6 +100,10 @@ TEST(Samples, AreRobotsWhereTheyAreSeveralElseStarts) {
   EXPECT_EQ(samplesOf({{0, 10, 1, ""}, {0, 10, 2, "r1"}}, kSameStart),
             (std::vector<std::size_t>{0, 1}))
       << "who has no name is another one";
+  const std::vector<Span> spans{
+      {0, 10, 5, "r1"}, {0, 10, 5, "r2"}, {2, 10, 0, "r1"}, {2, 10, 0, "r2"}, {3, 10, 0, "r2"}};
+  EXPECT_EQ(startsOf(spans, kSameStart), (std::vector<std::size_t>{0, 1, 2, 3, 3}))
+      << "a start is of one robot";
 }
 
 TEST(Relations, AsManyStartsAreEnoughAsItSaysAreNeeded) {
@@ -171,15 +169,12 @@ TEST(Relations, APhaseAroundZeroIsAsNarrowAsAnyOther) {
   ASSERT_GT(counts.delays(kA, kB)[log_bins::bin(kMillisecond)], 200U);
   ASSERT_GT(counts.delays(kA, kB)[log_bins::bin(99 * kMillisecond)], 200U);
   EXPECT_LT(delays(counts).spread, 0.1);
-}
-
-TEST(Relations, HiccupsDoNotWidenAPhase) {
-  Events answered = timer(kB, 20 * kMillisecond, kLength, kPeriod);
-  for (std::size_t k = 0; k < answered.size(); k += 50) {
-    answered[k].stamp += 50 * kMillisecond;
+  Events hiccups = timer(kB, 20 * kMillisecond, kLength, kPeriod);
+  for (std::size_t k = 0; k < hiccups.size(); k += 50) {
+    hiccups[k].stamp += 50 * kMillisecond;
   }
-  const Statistics counts = countsOf({together({timer(kA, 0, kLength, kPeriod), answered})}, 2);
-  EXPECT_LT(delays(counts).spread, 0.1);
+  const Events asked = timer(kA, 0, kLength, kPeriod);
+  EXPECT_LT(delays(countsOf({together({asked, hiccups})}, 2)).spread, 0.1) << "they widen none";
 }
 
 TEST(Relations, WhoComesLateInAPeriodMayBeTheOneThatAsks) {
@@ -269,13 +264,10 @@ TEST(Relations, AnIrregularTriggerIsAReason) {
   EXPECT_TRUE(delays(two).watched);
   const SourceGraph graph = connected("/x");
   EXPECT_TRUE(delays(one, graph).watched) << "both reasons at once are enough";
-}
-
-TEST(Relations, UnrelatedEventsAreNotIrregularForEachOther) {
-  const Statistics counts = countsOf(
+  const Statistics unrelated = countsOf(
       {together({irregular(kA, 0, kLength, kPeriod, 1), irregular(kB, 0, kLength, kPeriod, 2)})},
       2);
-  EXPECT_FALSE(delays(counts).irregular);
+  EXPECT_FALSE(delays(unrelated).irregular);
 }
 
 TEST(Relations, MissesByChanceAreTheGapsThatFitIntoThoseOfTheOther) {
@@ -302,6 +294,8 @@ TEST(Relations, ADeadlineNeedsAnAnswerThatTakesItsTime) {
   const Statistics counts =
       countsOf({together({asked, answers(kB, asked, 100 * kMillisecond)})}, 2);
   EXPECT_TRUE(isOwed(counts));
+  EXPECT_TRUE(isOwed(counts, connected("/x")));
+  EXPECT_FALSE(isOwed(counts, connected("/other"))) << "no message gets there";
   // Two that answer to the same come now in this order, now in that.
   Events first;
   Events second;
@@ -319,13 +313,10 @@ TEST(Relations, WhatComesAsOftenAsByChanceIsNotOwed) {
                                                 irregular(kB, 0, 400 * kSecond, 4 * kSecond, 2)})},
                                      2);
   EXPECT_FALSE(isOwed(counts));
-}
-
-TEST(Relations, ATimersOwnPeriodSaysAsMuchAsWhatItAnswersTo) {
-  const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond, 20 * kMillisecond});
-  EXPECT_FALSE(isOwed(counts));
-  const SourceGraph graph = connected("/x");
-  EXPECT_FALSE(isOwed(counts, graph));
+  // A timer's own period says as much as what it answers to.
+  const Statistics regular = timers({20 * kMillisecond, 20 * kMillisecond, 20 * kMillisecond});
+  EXPECT_FALSE(isOwed(regular));
+  EXPECT_FALSE(isOwed(regular, connected("/x")));
 }
 
 TEST(Relations, WhoComesOnlyInTheMiddleOfRecordingsIsSilentBeforeAndAfter) {
@@ -367,16 +358,6 @@ TEST(Relations, WhoPausesOwesAnswersThoughItSeldomMissesByChance) {
   Tuning strict;
   strict.rare_misses = strict.least_chance_misses;
   EXPECT_FALSE(Relations(counts, kNoGraph, strict).owed(kA, kB).watched);
-}
-
-TEST(Relations, WithAGraphADeadlineNeedsAMessageThatGetsThere) {
-  const Events asked = requests(1);
-  const Statistics counts =
-      countsOf({together({asked, answers(kB, asked, 100 * kMillisecond)})}, 2);
-  const SourceGraph reached = connected("/x");
-  const SourceGraph other = connected("/other");
-  EXPECT_TRUE(isOwed(counts, reached));
-  EXPECT_FALSE(isOwed(counts, other));
 }
 
 TEST(Relations, WhatANodeSaysAtItsNextStartIsNoAnswerToItsLastEnd) {

@@ -38,23 +38,17 @@ TEST_F(StallsTest, WhileThisProgramStoodStillTheRobotDidNot) {
   EXPECT_TRUE(stalls_.holdsBack(stall(51 * kMillisecond, kStart + kSecond)));
 }
 
-TEST_F(StallsTest, ALongSilenceIsNone) {
-  EXPECT_TRUE(stalls_.holdsBack(stall(700 * kMillisecond)));
-  stalls_.restart();
-  stalls_.add(kStart, false);
-  EXPECT_FALSE(stalls_.holdsBack(stall(701 * kMillisecond))) << "the robot is dead";
-}
-
-TEST_F(StallsTest, OneAsLongAsInTrainingIsForgiven) {
-  stalls_ = Stalls(40 * kMillisecond, kSecond, Tuning{});
-  stalls_.add(kStart, false);
-  EXPECT_TRUE(stalls_.holdsBack(stall(1250 * kMillisecond)));
-  stalls_.restart();
-  stalls_.add(kStart, false);
-  EXPECT_FALSE(stalls_.holdsBack(stall(1251 * kMillisecond)));
-  stalls_ = Stalls(40 * kMillisecond, kRateSpan, Tuning{});
-  stalls_.add(kStart, false);
-  EXPECT_FALSE(stalls_.holdsBack(stall(kRateSpan + 1))) << "longer ones are judged";
+TEST_F(StallsTest, ALongOneIsNoneUnlessItIsAsLongAsInTraining) {
+  const auto is_one = [&](std::int64_t of_training, std::int64_t length) {
+    stalls_ = Stalls(40 * kMillisecond, of_training, Tuning{});
+    stalls_.add(kStart, false);
+    return stalls_.holdsBack(stall(length));
+  };
+  EXPECT_TRUE(is_one(0, 700 * kMillisecond));
+  EXPECT_FALSE(is_one(0, 701 * kMillisecond)) << "the robot is dead";
+  EXPECT_TRUE(is_one(kSecond, 1250 * kMillisecond));
+  EXPECT_FALSE(is_one(kSecond, 1251 * kMillisecond));
+  EXPECT_FALSE(is_one(kRateSpan, kRateSpan + 1)) << "longer ones are judged";
 }
 
 TEST_F(StallsTest, NobodysAgeGrowsMeanwhileNorAfterwards) {
