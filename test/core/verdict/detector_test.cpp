@@ -15,7 +15,6 @@
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/verdict/persistence.h"
-#include "self_awareness/core/verdict/roc.h"
 
 namespace self_awareness::core {
 namespace {
@@ -235,27 +234,6 @@ TEST(Persistence, RefusesImpossibleValues) {
   EXPECT_THROW(Persistence({0, 5, 0}), std::invalid_argument);
   EXPECT_THROW(Persistence({6, 5, 0}), std::invalid_argument);
   EXPECT_THROW(Persistence({1, 5, -1}), std::invalid_argument);
-}
-
-TEST(Roc, LevelIsTheLargestCutoffWithSoFewFalsePositives) {
-  const Roc roc({1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, {});
-  EXPECT_EQ(roc.level(0.2).cutoff, 2.5);
-  EXPECT_EQ(roc.level(0.2).false_positive_rate, 0.2);
-  EXPECT_TRUE(std::isnan(roc.level(0.2).true_positive_rate));
-  EXPECT_EQ(roc.level(0.05).cutoff, 1);  // eq. 5 is strict: no normal score lies below it
-  EXPECT_EQ(roc.level(0.05).false_positive_rate, 0);
-  EXPECT_EQ(roc.level(1).cutoff, std::numeric_limits<double>::infinity());
-}
-
-TEST(Roc, NeedsWhatItIsAskedFor) {
-  EXPECT_THROW(Roc({}, {1}), std::invalid_argument);
-  EXPECT_THROW(Roc({std::nan("")}, {1}), std::invalid_argument);
-  const Roc normal_only({1, 2}, {});
-  EXPECT_THROW(normal_only.youden(), std::logic_error);
-  EXPECT_THROW(normal_only.closest(), std::logic_error);
-  EXPECT_THROW(normal_only.level(-0.1), std::invalid_argument);
-  EXPECT_THROW(normal_only.level(std::nan("")), std::invalid_argument);
-  EXPECT_TRUE(std::isnan(normal_only.auc()));
 }
 
 }  // namespace
