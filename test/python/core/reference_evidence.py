@@ -337,7 +337,8 @@ class ReferenceModel:
         if label == 'overdue':
             return 0.0
         if label == 'deadlines':
-            return 3.0 if self.counts_requests(track) else 0.5
+            return 3.0 if self.counts_requests(track) else max(
+                0.5, 4.0 * self.both.usual_delay(track[2], track[1], 0.95))
         if label == 'company':
             gap = 1.0 if is_mode(track[2]) else self.both.usual_delay(track[2], track[2], 0.5)
             return max(3.0, 0.5 / gap) if gap > 0 else 3.0

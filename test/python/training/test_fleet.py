@@ -79,8 +79,8 @@ def test_what_only_some_robots_have_is_named_and_missed_on_none_of_the_others(
             ] == ['r4', 'r4']
     capsys.readouterr()
     assert score.main([str(folder / 'r4'), '--model', calibrated]) == 0
-    said = capsys.readouterr()
-    assert '/lidar' not in said.out and 'warning' not in said.err
+    told = capsys.readouterr()
+    assert '/lidar' not in told.out and 'warning' not in told.err
 
 
 def test_a_rule_that_cannot_be_is_named(folder: Path, tmp_path: Path) -> None:

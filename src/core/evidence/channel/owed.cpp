@@ -32,7 +32,16 @@ class ExpectedAnswers : public Expectation {
 
   std::unique_ptr<ChannelState> start() const override;
   double leastLimit(std::size_t track) const override {
-    return countsRequests(track) ? model_.tuning().least_requests : model_.tuning().least_lateness;
+    const Tuning& tuning = model_.tuning();
+    // What usual answers take is normal, also where no request before them counts.
+    return countsRequests(track) ? tuning.least_requests
+                                 : std::max(tuning.least_lateness,
+                                            tuning.margin_of_waiting * 1e-9 * usualAnswer(track));
+  }
+  /// A usual answer takes no longer [ns].
+  double usualAnswer(std::size_t track) const {
+    const Track& owed = model_.tracks()[track];
+    return model_.usualDelay(owed.from, owed.to, (1 + kUsualAnswers) / 2);
   }
   double timeUntil(std::size_t track, double evidence) const override {
     return evidence * (countsRequests(track) ? model_.meanGap(model_.tracks()[track].from) : 1e9);
@@ -149,7 +158,7 @@ OwedState::OwedState(const ExpectedAnswers& expected)
     asks_[from].asked.push_back(number);
     asks_[to].answered.push_back(number);
     const bool in_requests = expected.countsRequests(track);
-    const double usual = in_requests ? 0 : model_.usualDelay(from, to, (1 + kUsualAnswers) / 2);
+    const double usual = in_requests ? 0 : expected.usualAnswer(track);
     owed_.push_back({track, to, in_requests, static_cast<std::int64_t>(usual), 0, 0});
   }
 }

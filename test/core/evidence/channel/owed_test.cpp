@@ -113,7 +113,9 @@ TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
   });
   EXPECT_GT(missRate(model_->statistics().type(kA).gaps, model_->statistics().answers(kA, kB)),
             model_->tuning().rare_misses);
-  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_lateness);
+  EXPECT_DOUBLE_EQ(model_->leastLimit(track_),
+                   model_->tuning().margin_of_waiting * 1e-9 * model_->usualDelay(kA, kB, 0.95))
+      << "in seconds: what usual answers take is normal";
 }
 
 TEST_F(OwedTest, WhatComesRightAfterAnAnswerMayHaveItAlready) {
