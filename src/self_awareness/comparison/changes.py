@@ -173,11 +173,12 @@ def _shift(what: str, before: Side, after: Side, pair: Tuple[Kind, Kind],
              if min(first, second) * SECOND_NS < edge <= max(first, second) * SECOND_NS]
     if len(edges) < 2:
         return None
-    period = SECOND_NS * before.duration / before.all.events(pairs[0][0])
-    least = (max(_LEAST_OF_GAP_S * SECOND_NS, _LEAST_OF_PERIOD * period) if what == GAP
-             else SECOND_NS * before.model.tuning.get('least_effect'))
+    least = before.model.tuning.get('least_effect')
+    if what == GAP:
+        period = before.duration / before.all.events(pairs[0][0])
+        least = max(_LEAST_OF_GAP_S, _LEAST_OF_PERIOD * period)
     change = Change(what, pair[1], None if what == GAP else pair[0], first, second,
-                    SECOND_NS * abs(second - first) / max(least, 1.0))
+                    abs(second - first) / max(least, 1.0 / SECOND_NS))
     return _Candidate(change, *(_measured_share(side, ids, edges[len(edges) // 2])
                                 for side, ids in zip(sides, pairs)))
 
