@@ -315,13 +315,27 @@ class ReferenceModel:
     def _fail(self) -> bool:
         """Return whether answers that are not asked for in series fail now and then."""
         missing, asked = 0.5, 1.0
-        for channel, to, other in self.tracks:
-            if channel == 'deadlines' and not self._are_series(other):
-                requests = len(self.both.gaps[other])
-                answers = self.both.answers[other, to]
-                missing += max(requests * (1 - self._too_soon(to, other)) - answers, 0)
+        for track in self.tracks:
+            if track[0] == 'deadlines' and not self._are_series(track[2]):
+                requests, missed = self._requests(track)
+                missing += missed
                 asked += requests
         return missing / asked > RARE_MISSES
+
+    def _requests(self, track: Track) -> Tuple[float, float]:
+        """Return how many requests an answer may be expected to, and how many have none."""
+        _, to, other = track
+        requests = len(self.both.gaps[other]) * (1 - self._too_soon(to, other))
+        return requests, max(requests - self.both.answers[other, to], 0.0)
+
+    @lru_cache(maxsize=None)
+    def step_of_miss(self, track: Track) -> float:
+        """Return what a request without an answer adds to the sum [nat]."""
+        requests, missed = self._requests(track)
+        n, share = requests + 1, (missed + 0.5) / (requests + 1)
+        likely = ((share + 0.5 / n + math.sqrt(share * (1 - share) / n + 0.25 / n ** 2))
+                  / (1 + 1 / n))
+        return min(math.log((1 + 1 / likely) / 2), LEAST_SUM / 2)
 
     def _are_series(self, other: str) -> bool:
         return self.both.mean_gap(other) < LONGEST_GAP_OF_SERIES
@@ -337,7 +351,7 @@ class ReferenceModel:
         if label == 'overdue':
             return 0.0
         if label == 'deadlines':
-            return 3.0 if self.counts_requests(track) else max(
+            return LEAST_SUM if self.counts_requests(track) else max(
                 0.5, 4.0 * self.both.usual_delay(track[2], track[1], 0.95))
         if label == 'company':
             gap = 1.0 if is_mode(track[2]) else self.both.usual_delay(track[2], track[2], 0.5)

@@ -1,6 +1,7 @@
 """The evidence of a recording, literally and slowly: docs/method.md, section 3."""
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from typing import Dict, List, Optional, Sequence, Tuple
 
@@ -98,6 +99,9 @@ class ReferenceScorer:
         self._told: List[Tuple[int, str]] = []  # modes
         self._watches = {track: Watch(self._caps.get(track, MOST_EVIDENCE))
                          for track in model.tracks if LABELS[track[0]] in ('pairs', 'pace')}
+        self._misses = {track: Watch(self._caps.get(track, MOST_EVIDENCE))
+                        for track in model.tracks
+                        if track[0] == 'deadlines' and model.counts_requests(track)}
         self._usual_silence = max(model.both.longest_silence * 5 // 4, SHORTEST_STALL)
         self._longest_stall = max(LONGEST_STALL, min(model.both.longest_stall * 5 // 4,
                                                      LONGEST_STALL_OF_TRAINING))
@@ -148,22 +152,31 @@ class ReferenceScorer:
         for track in self._model.tracks:
             if track[0] in ('deadlines', 'company'):
                 if track[1] == kind:
-                    self._requests[track] = []
-                if (track[2] == kind and not self._has_waited(t)  # never a mode
-                        and not self._may_be_answered(t, track)):
-                    self._requests[track].append(t)
+                    self._answer(track)
+                if track[2] == kind and not self._has_waited(t):  # never a mode
+                    self._ask(t, track)
         if own is not None and t - own[0] > GONE_GAPS * self._model.longest[kind]:
             for track, watch in self._watches.items():
                 if kind in track[1:]:
                     watch.disarm()
 
-    def _may_be_answered(self, t: int, track: Track) -> bool:
-        """Return whether the answer to a request may have come before it."""
+    def _answer(self, track: Track) -> None:
+        if track in self._misses:
+            self._misses[track].add(-math.log(2.0) if self._requests[track]
+                                    else -self._model.step_of_miss(track))
+        self._requests[track] = []
+
+    def _ask(self, t: int, track: Track) -> None:
         channel, to, other = track
-        last = self._last.get(to)
-        return (channel == 'deadlines' and last is not None
-                and not self._model.counts_requests(track)
-                and t - last[0] < int(SECOND * self._model.both.usual_delay(other, to, 0.95)))
+        requests, last = self._requests[track], self._last.get(to)
+        if channel == 'deadlines':
+            usual = int(SECOND * self._model.both.usual_delay(other, to, 0.95))
+            if track not in self._misses:
+                if last is not None and t - last[0] < usual:
+                    return
+            elif requests and last is not None and t - requests[-1] >= usual:
+                self._misses[track].add(self._model.step_of_miss(track))
+        requests.append(t)
 
     def _add_gap(self, watch: Watch, gap: int, track: Track, waited: bool) -> None:
         step = self._model.step(track, gap)
@@ -244,6 +257,8 @@ class ReferenceScorer:
                 return 0.0
             return max(self._lasted(other, since, end)
                        - self._stood_still(since, stall, stalled), 0) / SECOND
+        if track in self._misses:
+            return self._misses[track].sum
         if channel in ('deadlines', 'company'):
             started = self._start is not None and end - self._start >= START_TIME
             requests = self._requests[track]
@@ -251,8 +266,7 @@ class ReferenceScorer:
             if not requests or not owes:
                 return 0.0
             return (float(len(requests))
-                    if channel == 'company' or self._model.counts_requests(track)
-                    else (end - requests[0]) / SECOND)
+                    if channel == 'company' else (end - requests[0]) / SECOND)
         if last is None:
             return 0.0
         if channel == 'overdue':

@@ -22,10 +22,8 @@ struct Tuning {
   // Which relations have a reason.
   double least_gain = 0.3;
   double least_gain_left = 0.7;
-  double chance_of_any = 0.1;
-  double chance_of_one = 0.05;
+  double chance = 0.1;
   double least_chance_misses = 0.2;
-  double most_of_chance_misses = 0.75;
   double most_misses = 0.5;
   double rare_misses = 0.02;
   double least_of_longest = 0.1;

@@ -258,7 +258,7 @@ std::vector<Track> Company::watch(const Choice& choice) const {
       const double chance =
           pauses[to]->number * std::log(of_to) + pauses[from]->number * std::log(of_from);
       if (of_to < 1 && of_from < 1 &&
-          chance <= std::log(choice.tuning.chance_of_any / choice.relations.lookedAt()) &&
+          chance <= std::log(choice.tuning.chance / choice.relations.lookedAt()) &&
           (lasts || !choice.relations.owed(to, from).reaches)) {  // last, since this takes time
         best.emplace_back(of_to, from);
       }

@@ -1,9 +1,12 @@
 #include "core/evidence/channel/owed.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "core/evidence/channel/share.h"
+#include "core/evidence/channel/sum.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
@@ -11,59 +14,79 @@ namespace {
 
 // All but as many answers as this leaves out on both sides take no longer than usual.
 constexpr double kUsualAnswers = 0.9;
+// A share of misses may be as large as so many standard deviations tell.
+constexpr double kLikelyMisses = 1;
 
 class ExpectedAnswers : public Expectation {
  public:
+  struct Answer {
+    double usual = 0;   // a usual one takes no longer [ns]
+    double missed = 0;  // what a request without one adds to the sum [nat]; 0: in seconds
+  };
+
   ExpectedAnswers(const Model& model, std::vector<std::size_t> tracks)
       : Expectation(std::move(tracks)), model_(model) {
     double missing = 0.5;  // as in missRate()
     double asked = 1;
     for (const std::size_t track : this->tracks()) {
-      if (!areSeries(track)) {
-        const Track& owed = model_.tracks()[track];
-        const auto requests = static_cast<double>(model_.statistics().type(owed.from).gaps);
-        const auto answers = static_cast<double>(model_.statistics().answers(owed.from, owed.to));
-        missing += std::max(requests * (1 - tooSoon(owed)) - answers, 0.0);
-        asked += requests;
-      }
+      const Requests requests = requestsOf(track);
+      missing += areSeries(track) ? 0 : requests.missed;
+      asked += areSeries(track) ? 0 : requests.all;
     }
-    fail_ = missing / asked > model_.tuning().rare_misses;
+    const double rare = model_.tuning().rare_misses;
+    const bool fail = missing / asked > rare;  // those of this robot, now and then
+    for (const std::size_t track : this->tracks()) {
+      const Track& owed = model_.tracks()[track];
+      const Requests requests = requestsOf(track);
+      const double share = likelyShare(requests.missed + 0.5, requests.all + 1, kLikelyMisses);
+      const std::uint64_t gaps = model_.statistics().type(owed.from).gaps;
+      const bool counts =
+          fail || areSeries(track) ||
+          missRate(gaps, model_.statistics().answers(owed.from, owed.to)) > tooSoon(owed) + rare;
+      answers_.push_back({model_.usualDelay(owed.from, owed.to, (1 + kUsualAnswers) / 2),
+                          counts ? stepOfSum(1 / share, model_.tuning().least_sum) : 0});
+    }
   }
 
   std::unique_ptr<ChannelState> start() const override;
   double leastLimit(std::size_t track) const override {
     const Tuning& tuning = model_.tuning();
     // What usual answers take is normal, also where no request before them counts.
-    return countsRequests(track) ? tuning.least_requests
-                                 : std::max(tuning.least_lateness,
-                                            tuning.margin_of_waiting * 1e-9 * usualAnswer(track));
-  }
-  /// A usual answer takes no longer [ns].
-  double usualAnswer(std::size_t track) const {
-    const Track& owed = model_.tracks()[track];
-    return model_.usualDelay(owed.from, owed.to, (1 + kUsualAnswers) / 2);
+    return answer(track).missed > 0
+               ? tuning.least_sum
+               : std::max(tuning.least_lateness,
+                          tuning.margin_of_waiting * 1e-9 * answer(track).usual);
   }
   double timeUntil(std::size_t track, double evidence) const override {
-    return evidence * (countsRequests(track) ? model_.meanGap(model_.tracks()[track].from) : 1e9);
+    const double missed = answer(track).missed;
+    const double gap = model_.meanGap(model_.tracks()[track].from);
+    return missed > 0 ? (std::floor(evidence / missed) + 1) * gap : evidence * 1e9;
   }
   double limit(std::size_t track, double largest, double most) const override {
     const EventId to = model_.tracks()[track].to;
-    return timeUntil(track, largest) <
-                   model_.tuning().owed_of_silence * static_cast<double>(model_.longestSilence(to))
+    const bool says_more =
+        timeUntil(track, largest) <
+        model_.tuning().owed_of_silence * static_cast<double>(model_.longestSilence(to));
+    return says_more && (answer(track).missed == 0 || largest < kMostSum)
                ? most
                : std::numeric_limits<double>::quiet_NaN();
   }
-  /// Whether requests come in series, or stay without an answer now and then, and are counted.
-  bool countsRequests(std::size_t track) const {
-    const Track& owed = model_.tracks()[track];
-    const Statistics& counts = model_.statistics();
-    return fail_ || areSeries(track) ||
-           missRate(counts.type(owed.from).gaps, counts.answers(owed.from, owed.to)) >
-               tooSoon(owed) + model_.tuning().rare_misses;
-  }
+  const Answer& answer(std::size_t track) const { return answers_[numberOf(track)]; }
   const Model& model() const { return model_; }
 
  private:
+  /// Requests of training that an answer may be expected to, before the next one.
+  struct Requests {
+    double all = 0;
+    double missed = 0;  // of them, without one
+  };
+
+  Requests requestsOf(std::size_t track) const {
+    const Track& owed = model_.tracks()[track];
+    const Statistics& counts = model_.statistics();
+    const double all = static_cast<double>(counts.type(owed.from).gaps) * (1 - tooSoon(owed));
+    return {all, std::max(all - static_cast<double>(counts.answers(owed.from, owed.to)), 0.0)};
+  }
   bool areSeries(std::size_t track) const {
     return model_.meanGap(model_.tracks()[track].from) < static_cast<double>(kRateSpan);
   }
@@ -80,7 +103,7 @@ class ExpectedAnswers : public Expectation {
   }
 
   const Model& model_;
-  bool fail_ = false;  // those of this robot that are not asked for in series, now and then
+  std::vector<Answer> answers_;  // by number of the track
 };
 
 class OwedState : public ChannelState {
@@ -90,30 +113,30 @@ class OwedState : public ChannelState {
   bool listens() const override { return !owed_.empty(); }
   void add(const Heard::Arrival& arrival, const Heard& heard) override {
     for (const std::uint32_t number : asks_[arrival.id].answered) {
-      owed_[number].requests = 0;
+      answer(owed_[number], arrival.stamp);
     }
     if (arrival.stalled) {
       return;  // what waited comes all at once, before any answer to it
     }
     for (const std::uint32_t number : asks_[arrival.id].asked) {
-      Answer& answer = owed_[number];
-      // Two that answer to the same come in any order: what it asks for may have come before it.
-      const std::optional<std::int64_t> answered = heard.lastSeen(answer.to);
-      if (answered && arrival.stamp - *answered < answer.usual) {
-        continue;
-      }
-      answer.since = answer.requests > 0 ? answer.since : arrival.stamp;
-      ++answer.requests;
+      ask(owed_[number], arrival.stamp, heard);
     }
   }
   void restart() override {
     for (Answer& answer : owed_) {
       answer.requests = 0;
+      answer.sum.value = 0;
+    }
+  }
+  void capAt(const std::vector<double>& limits) override {
+    for (Answer& answer : owed_) {
+      answer.sum.capAt(limits[answer.track], model_.tuning().most_of_limit);
     }
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
   std::optional<std::int64_t> onset(std::size_t track) const override {
-    return answerOf(track).since;
+    const Answer& answer = answerOf(track);
+    return answer.requests > 1 || answer.step == 0 ? answer.since : answer.sum.since;
   }
   void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
                Suspect& suspect) const override;
@@ -122,10 +145,14 @@ class OwedState : public ChannelState {
   struct Answer {
     std::size_t track = 0;
     EventId to = 0;
-    bool in_requests = false;    // else in seconds
-    std::int64_t usual = 0;      // a usual answer takes no longer [ns]; 0: in requests
-    std::uint32_t requests = 0;  // without an answer
+    std::int64_t usual = 0;      // a usual answer takes no longer [ns]
+    double step = 0;             // what a request without an answer adds [nat]; 0: in seconds
+    std::uint32_t requests = 0;  // since the last answer
     std::int64_t since = 0;      // stamp of the first of them [ns], if there is one
+    std::int64_t last = 0;       // stamp of the last of them
+    Sum sum;
+    std::uint32_t missed = 0;  // requests without an answer, since the sum was 0
+    std::uint32_t asked = 0;   // requests since then
   };
   /// Numbers of answers: that an event type asks for, and that it is.
   struct OfType {
@@ -138,8 +165,11 @@ class OwedState : public ChannelState {
                          [track](const Answer& each) { return each.track == track; });
   }
   static double waiting(const Answer& answer, const Heard& heard) {
-    return answer.in_requests ? answer.requests : toSeconds(heard.windowEnd() - answer.since);
+    return answer.requests > 0 ? toSeconds(heard.windowEnd() - answer.since) : 0;
   }
+  static void answer(Answer& answer, std::int64_t stamp);
+  static void ask(Answer& answer, std::int64_t stamp, const Heard& heard);
+  static void add(Answer& answer, bool missed, double step, std::int64_t stamp);
 
   const Model& model_;
   std::vector<Answer> owed_;
@@ -157,17 +187,51 @@ OwedState::OwedState(const ExpectedAnswers& expected)
     const auto [channel, to, from] = model_.tracks()[track];
     asks_[from].asked.push_back(number);
     asks_[to].answered.push_back(number);
-    const bool in_requests = expected.countsRequests(track);
-    const double usual = in_requests ? 0 : expected.usualAnswer(track);
-    owed_.push_back({track, to, in_requests, static_cast<std::int64_t>(usual), 0, 0});
+    Answer& answer = owed_.emplace_back();
+    answer.track = track;
+    answer.to = to;
+    answer.usual = static_cast<std::int64_t>(expected.answer(track).usual);
+    answer.step = expected.answer(track).missed;
   }
+}
+
+void OwedState::add(Answer& answer, bool missed, double step, std::int64_t stamp) {
+  if (answer.sum.add(step, stamp)) {
+    answer.missed = 0;
+    answer.asked = 0;
+  }
+  answer.missed += missed ? 1 : 0;
+  ++answer.asked;
+}
+
+void OwedState::answer(Answer& answer, std::int64_t stamp) {
+  if (answer.step > 0 && answer.requests > 0) {
+    add(answer, false, -kStepOfUsual, stamp);
+  } else if (answer.step > 0) {
+    answer.sum.add(-answer.step, stamp);  // the one before was only late
+  }
+  answer.requests = 0;
+}
+
+void OwedState::ask(Answer& answer, std::int64_t stamp, const Heard& heard) {
+  const std::optional<std::int64_t> answered = heard.lastSeen(answer.to);
+  if (answer.step > 0) {
+    // Who was never heard is NeverHeard's matter.
+    if (answer.requests > 0 && stamp - answer.last >= answer.usual && answered) {
+      add(answer, true, answer.step, answer.last);
+    }
+  } else if (answered && stamp - *answered < answer.usual) {
+    return;  // two that answer to the same come in any order: it may have come already
+  }
+  answer.since = answer.requests > 0 ? answer.since : stamp;
+  answer.last = stamp;
+  ++answer.requests;
 }
 
 void OwedState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
   for (const Answer& answer : owed_) {
-    // Who was never heard is NeverHeard's matter.
-    const bool owes = answer.requests > 0 && heard.hasSeen(answer.to);
-    evidence[answer.track] = owes ? waiting(answer, heard) : 0;
+    const double seconds = heard.hasSeen(answer.to) ? waiting(answer, heard) : 0;
+    evidence[answer.track] = answer.step > 0 ? answer.sum.value : seconds;
   }
 }
 
@@ -177,16 +241,19 @@ void OwedState::explain(std::size_t track, const Heard& heard, const RecentEvent
   reason.kind = Kind::kSilent;
   reason.after = toString(model_.vocabulary().at(model_.tracks()[track].from));
   const Answer& answer = answerOf(track);
-  char text[60];
-  if (answer.in_requests) {
-    reason.unit = unit::kRequests;
-    reason.value = static_cast<double>(answer.requests);
-    std::snprintf(text, sizeof text, "has not come after the last %u ", answer.requests);
-  } else {
+  char text[80];
+  if (answer.step == 0) {
     reason.unit = unit::kSeconds;
-    reason.value = answer.requests > 0 ? waiting(answer, heard) : 0;
+    reason.value = waiting(answer, heard);
     reason.lasted = reason.value;
     std::snprintf(text, sizeof text, "has not come for %.2f s after ", reason.value);
+  } else {
+    reason.unit = unit::kRequests;
+    const bool at_all = answer.missed < answer.asked;
+    reason.value = at_all ? answer.missed : answer.requests;
+    at_all ? std::snprintf(text, sizeof text, "has not come after %u of the last %u ",
+                           answer.missed, answer.asked)
+           : std::snprintf(text, sizeof text, "has not come after the last %u ", answer.requests);
   }
   reason.words = text + reason.after;
 }

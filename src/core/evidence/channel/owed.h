@@ -6,7 +6,7 @@ namespace self_awareness::core::evidence {
 
 /// Owed answers (docs/method.md, section 3.4): the `to` that `from` asks for does not come in
 /// time. Evidence is the time since the first request without an answer [s], or, where requests
-/// come in series, or answers fail now and then, their number.
+/// come in series, or answers fail now and then, the sum of what requests without one say [nat].
 class Owed : public Channel {
  public:
   std::string name() const override { return "deadlines"; }

@@ -246,21 +246,23 @@ void PairsState::explain(std::size_t track, const Heard& heard, const RecentEven
 
 }  // namespace
 
-// Of every event type the predecessors that say most of it, those with a reason first. The others
-// fill the places that are left: recordings of the calibration may give them a reason.
+// Of every event type the predecessors that say most of it, those with a reason first, then those
+// that the graph says reach it. The others fill the places that are left: recordings of the
+// calibration may give them a reason.
 std::vector<Track> Pairs::watch(const Choice& choice) const {
   std::vector<Track> tracks;
   for (EventId to = 0; to < choice.both.size(); ++to) {
-    std::vector<std::tuple<bool, double, EventId>> best;
+    std::vector<std::tuple<bool, bool, double, EventId>> best;
     for (EventId from = 0; from < choice.both.size(); ++from) {
       if (from != to && choice.areEnough(from, to) && choice.saysEnough(from, to)) {
-        best.emplace_back(!choice.relations.delays(from, to).watched, -choice.gains(from, to),
-                          from);
+        const Relation reason = choice.relations.delays(from, to);
+        const bool is_known = choice.relations.knowGraph() && reason.reaches;
+        best.emplace_back(!reason.watched, !is_known, -choice.gains(from, to), from);
       }
     }
     std::sort(best.begin(), best.end());
     best.resize(std::min(best.size(), static_cast<std::size_t>(choice.tuning.predecessors)));
-    for (const auto& [waits, gain, from] : best) {
+    for (const auto& [waits, is_unknown, gain, from] : best) {
       tracks.push_back({this, to, from});
     }
   }

@@ -31,6 +31,9 @@ inline double stepOfSum(double ratio, double least) {
   return std::min(std::log((1 + ratio) / 2), least / 2);
 }
 
+/// What an event takes from a sum that no event of the other kind is like [nat].
+inline const double kStepOfUsual = std::log(2.0);
+
 /// Sum of what events say, as in Page's CUSUM test: what is usual takes from it, what is unusual
 /// adds to it, and it never falls below 0. A fault that lasts is found soon, one that comes and
 /// goes is found later, and chance alone hardly adds up.

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/evidence/channel/share.h"
 #include "core/evidence/channel/sum.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
@@ -51,17 +52,11 @@ std::vector<Topic> topicsIn(const Statistics& counts) {
   return all;
 }
 
-/// The largest share that is likely (Wilson, "Probable inference", 1927); 1: there is no message.
+/// The largest share that is likely; 1: there is no message.
 double shareOf(const Statistics& counts, EventId id, const Topic& topic) {
-  const auto all = static_cast<double>(topic.messages);
-  if (all == 0) {
-    return 1;
-  }
-  const double seen = static_cast<double>(counts.type(id).events) / all;
-  const double spread = kDeviations * kDeviations / all;
-  return (seen + spread / 2 +
-          kDeviations * std::sqrt(seen * (1 - seen) / all + spread / (4 * all))) /
-         (1 + spread);
+  return topic.messages == 0 ? 1
+                             : likelyShare(static_cast<double>(counts.type(id).events),
+                                           static_cast<double>(topic.messages), kDeviations);
 }
 
 class ExpectedShares : public Expectation {
@@ -69,7 +64,6 @@ class ExpectedShares : public Expectation {
   struct Usual {
     double share = 0;  // that is likely, at most
     double more = 0;   // what a message with the value adds to the sum [nat]
-    double less = 0;   // what another one takes from it [nat]
     double least_limit = 0;
     std::int64_t pause = 0;  // after which what was said before says nothing of now [ns]
   };
@@ -93,9 +87,7 @@ class ExpectedShares : public Expectation {
         }
         Usual& usual = usual_[number];
         usual.share = std::min(shareOf(model.learned(), of_track, topic), kMostUsual);
-        const double often = (1 + usual.share) / 2;
-        usual.more = std::log(often / usual.share);
-        usual.less = std::log((1 - usual.share) / (1 - often));
+        usual.more = stepOfSum(1 / usual.share, model.tuning().least_sum);
         usual.least_limit = std::max(std::log(an_hour / kSumByChance), model.tuning().least_sum);
         usual.pause = std::max(kRateSpan, pause);
         for (const EventId id : topic.ids) {
@@ -134,7 +126,7 @@ class SharesState : public ChannelState {
       const ExpectedShares::Usual& usual = expected_.usual(number);
       OfValue& value = values_[number];
       const bool has_it = expected_.model().tracks()[expected_.tracks()[number]].to == arrival.id;
-      if (value.sum.add(has_it ? usual.more : -usual.less, arrival.stamp)) {
+      if (value.sum.add(has_it ? usual.more : -kStepOfUsual, arrival.stamp)) {
         value.with = 0;
         value.messages = 0;
       }

@@ -146,7 +146,7 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
   if (limits.tracks.size() != model.tracks().size()) {
     throw std::invalid_argument("limits: one of each track is needed");
   }
-  const double chance_of_one = model.tuning().chance_of_one;
+  const double chance = model.tuning().chance;
   std::vector<Coverage> coverages(model.components().size());
   for (std::size_t k = 0; k < coverages.size(); ++k) {
     coverages[k].component = model.components()[k];
@@ -185,8 +185,8 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
       }
       if (!judged && number < relations.size()) {
         of.more_starts = fewer(of.more_starts, relations[number]);
-        of.graph_helps = of.graph_helps ||
-                         (!knows_graph && wouldBeWatchedByGraph(relations[number], chance_of_one));
+        of.graph_helps =
+            of.graph_helps || (!knows_graph && wouldBeWatchedByGraph(relations[number], chance));
       }
     }
   }

@@ -191,10 +191,9 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
     // It may answer to every Nth message: then its period is its own.
     relation.spread = std::min(relation.spread, spread(from, to, left_out, meanGap(to)));
   }
-  const double level = relation.reaches && relation.irregular ? 1
-                       : relation.reaches || relation.irregular
-                           ? tuning_.chance_of_one
-                           : tuning_.chance_of_any / looked_at_;
+  const double level = relation.reaches && relation.irregular   ? 1
+                       : relation.reaches || relation.irregular ? tuning_.chance
+                                                                : tuning_.chance / looked_at_;
   const bool late = (!relation.reaches || areOfOneSource(from, to)) && isLate(from, to);
   relation.watched = !late && byChance(relation) <= level;
   relation.starts_needed =
@@ -231,7 +230,7 @@ Relations::Asked Relations::asked(EventId from, EventId to, std::uint64_t answer
                       tuning_.most_mean_gaps * meanGap(to);
   asked.beyond_chance =
       by_chance >= (pauses || asked.reaches ? tuning_.rare_misses : tuning_.least_chance_misses) &&
-      misses <= tuning_.most_of_chance_misses * by_chance;
+      misses < by_chance;
   asked.divergence =
       asked.beyond_chance ? divergence(static_cast<double>(gaps), misses, by_chance) : 0;
   return asked;
@@ -249,7 +248,7 @@ Relation Relations::owed(EventId from, EventId to) const {
   const bool late = asked.reaches && areOfOneSource(from, to) && isLate(from, to);
   relation.watched = asked.beyond_chance && in_order && !late &&
                      (graph_.empty() || asked.reaches) &&
-                     asked.divergence > std::log(looked_at_ / tuning_.chance_of_any);
+                     asked.divergence > std::log(looked_at_ / tuning_.chance);
   return relation;
 }
 
@@ -258,7 +257,7 @@ bool Relations::mayBeOwed(EventId from, EventId to, std::uint64_t answers) const
     return false;
   }
   const Asked asked = this->asked(from, to, answers);
-  return asked.beyond_chance && asked.divergence > -std::log(tuning_.chance_of_any);
+  return asked.beyond_chance && asked.divergence > -std::log(tuning_.chance);
 }
 
 double byChance(const Relation& relation) {

@@ -34,6 +34,8 @@ class Relations {
   /// @param answers gaps of `from` in which a `to` came
   bool mayBeOwed(EventId from, EventId to, std::uint64_t answers) const;
 
+  /// Whether it is known who hears whom.
+  bool knowGraph() const { return !graph_.empty(); }
   /// Number of ordered pairs of event types with enough gaps; 1 if there are none.
   double lookedAt() const { return looked_at_; }
   /// Share of the gaps of `from` in which no `to` would come if they had nothing to do with each

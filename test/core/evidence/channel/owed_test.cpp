@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "channel_case.h"
+#include "core/evidence/channel/sum.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -77,20 +78,50 @@ TEST_F(OwedTest, WhoWasNeverHeardOwesNothing) {
   EXPECT_EQ(evidenceAt(3000 * kSecond), 0);
 }
 
-TEST_F(OwedTest, SeriesOfRequestsAreCounted) {
+TEST_F(OwedTest, SeriesOfRequestsWithoutAnAnswerAddUp) {
   learn(500 * kMillisecond);
   scorer_->add({0, kA});
   scorer_->add({50 * kMillisecond, kB});
+  const double step =
+      model_->tuning().least_sum / 2;  // none of 400 requests was without an answer
   for (int k = 1; k <= 10; ++k) {
-    EXPECT_EQ(evidenceAt(k * kSecond), k - 1);
+    EXPECT_DOUBLE_EQ(evidenceAt(k * kSecond), step * std::max(k - 2, 0)) << "the last one is open";
     scorer_->add({k * kSecond, kA});
   }
-  EXPECT_EQ(evidenceAt(100 * kSecond), 10) << "time alone is no request";
+  EXPECT_DOUBLE_EQ(evidenceAt(100 * kSecond), 9 * step) << "time alone is no request";
   EXPECT_EQ(reason().value, 10);
   EXPECT_EQ(reason().unit, unit::kRequests);
   EXPECT_EQ(reason().words, "has not come after the last 10 /a /x T");
   scorer_->add({100 * kSecond, kB});
-  EXPECT_EQ(evidenceAt(101 * kSecond), 0);
+  EXPECT_DOUBLE_EQ(evidenceAt(101 * kSecond), 9 * step - kStepOfUsual);
+}
+
+TEST_F(OwedTest, RequestsWithoutAnAnswerNowAndThenAddUp) {
+  learn(500 * kMillisecond);
+  scorer_->add({0, kB});
+  // Two of three have no answer.
+  for (int k = 1; k <= 12; ++k) {
+    scorer_->add({k * kSecond, kA});
+    if (k % 3 == 0) {
+      scorer_->add({k * kSecond + 50 * kMillisecond, kB});
+    }
+  }
+  EXPECT_GT(evidenceAt(13 * kSecond), 3 * model_->tuning().least_sum);
+  EXPECT_EQ(reason().words, "has not come after 8 of the last 12 /a /x T");
+}
+
+TEST_F(OwedTest, AnAnswerThatComesAfterTheNextRequestIsNotMissing) {
+  // The phases cross: now none comes between two requests, now two.
+  learn(500 * kMillisecond);
+  scorer_->add({0, kB});
+  for (int k = 1; k <= 40; ++k) {
+    scorer_->add({k * kSecond, kA});
+    if (k % 2 == 0) {
+      scorer_->add({k * kSecond + 50 * kMillisecond, kB});
+      scorer_->add({k * kSecond + 950 * kMillisecond, kB});
+    }
+    EXPECT_LT(evidenceAt(k * kSecond + 990 * kMillisecond), model_->tuning().least_sum);
+  }
 }
 
 TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
@@ -99,14 +130,14 @@ TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
   learn([&](unsigned seed) {
     return together({asked(seed), answers(kB, fourOfFive(asked(seed)), kGap / 10)});
   });
-  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
+  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_sum);
   // B answers always, and C four times of five.
   learn([&](unsigned seed) {
     return together({asked(seed), answers(kB, asked(seed), kGap / 10),
                      answers(kC, fourOfFive(asked(seed)), kGap / 8)});
   });
   ASSERT_LT(indexOf(model_->tracks(), kDeadlines, kC, kA), model_->tracks().size());
-  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
+  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_sum);
   // A request that the next one overtakes is none without an answer.
   learn([&](unsigned seed) {
     return together({asked(seed), answers(kB, asked(seed), kGap * 3 / 10)});
