@@ -17,12 +17,11 @@ PAGE = f'evaluation/{pages.RESEARCH}'  # whose tables have them, from the folder
 
 
 class Number(NamedTuple):
-    """A row of the README's table: what it is in words, and the heading above the table, the first
-    cell of the row and the column of its cell."""
+    """A row of the README's table, and where its cell is."""
 
-    what: str
-    heading: str
-    row: str
+    what: str  # it is, in words
+    heading: str  # above the table
+    row: str  # its first cell
     column: str
 
 
@@ -31,8 +30,7 @@ NUMBERS = [
       for fault, what in sections.TOLD.items()),
     Number(sections.FALSE_ALARMS, sections.OWN_TITLE, sections.FALSE_ALARMS, 'evidence'),
     Number('the same, on robots of other kinds, learned from 4 starts', sections.FAMILIES_TITLE,
-           sections.ALL, 'false alarms/h, 4 starts'),
-]
+           sections.ALL, 'false alarms/h, 4 starts')]
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -58,8 +56,7 @@ def cell(page: str, number: Number) -> str:
     head, *body = ([each.strip() for each in line.strip('|').split('|')]
                    for line in (table[0] if table else '').split('\n'))
     if number.column not in head:
-        raise ValueError(f'{PAGE}: no column {number.column!r} in the table of '
-                         f'{number.heading!r}')
+        raise ValueError(f'{PAGE}: no column {number.column!r} in the table of {number.heading!r}')
     for row in body:
         if row[0] == number.row:
             return row[head.index(number.column)]
@@ -76,9 +73,7 @@ def _numbers(arguments: argparse.Namespace, _: str) -> None:
 
 
 def parser() -> argparse.ArgumentParser:
-    """Return what parses the arguments."""
-    parser = argparse.ArgumentParser(
-        prog='evaluate', description=__doc__.split(': ', 1)[1])
+    parser = argparse.ArgumentParser(prog='evaluate', description=__doc__.split(': ', 1)[1])
     parts = parser.add_subparsers(metavar='PART', required=True)
     offline.add(parts)
     pages.add_compare(parts)

@@ -17,8 +17,8 @@ from self_awareness_evaluation.records import NORMAL, Learning, Robot, System, W
 from self_awareness_evaluation.rows import Row, Subject, fault_row, flat, load, normal_row, save
 from self_awareness_evaluation.variants import Variant
 
-AT_ONCE = 16
-"""Variants that judge a robot's records at a time: more of them do not fit into the memory."""
+# Variants that judge a robot's records at a time: more of them do not fit into the memory.
+_AT_ONCE = 16
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,8 @@ class Unit:
     """What is measured at a time, and then kept: records, and variants that judge them."""
 
     rows: Callable[[Unit], Iterable[Row]]  # yields the rows of the unit
-    # Of the records, see Subject.
-    part: str
-    name: str
+    part: str  # of the records, see Subject
+    name: str  # of their robot
     variants: Tuple[Variant, ...]  # that judge
 
     def __str__(self) -> str:
@@ -42,64 +41,40 @@ class Unit:
 
 
 def run(units: Sequence[Unit], path: Path, plan: str, jobs: int) -> List[Row]:
-    """Return the rows of all units, in their order; `jobs` of them are measured at a time.
-
-    Args:
-        path: of the file of rows; what it holds already is not measured again.
-        plan: what decides on the rows besides their subjects, in words.
-
-    Raises:
-        ValueError: the file holds rows of another plan or of another method.
-    """
+    """Return the rows of all units, in their order; `jobs` of them are measured at a time, but for
+    what the file of rows holds already (see KeptRows)."""
     kept = KeptRows(path, plan)
-    left = [replace(unit, variants=variants[first:first + AT_ONCE]) for unit in units
+    left = [replace(unit, variants=variants[first:first + _AT_ONCE]) for unit in units
             for variants in [tuple(variant for variant in unit.variants
-                                   if not kept.has(unit.subject(variant)))]
-            for first in range(0, len(variants), AT_ONCE)]
-    with closing(Processes(jobs).map(_measured, None, left, 'evaluating')) as measured:
+                                   if unit.subject(variant) not in kept.rows)]
+            for first in range(0, len(variants), _AT_ONCE)]
+    with closing(Processes(jobs).map(lambda _, unit: list(unit.rows(unit)), None, left,
+                                     'evaluating')) as measured:
         for rows in measured:
             kept.add(rows)
-    return kept.of([unit.subject(variant) for unit in units for variant in unit.variants])
-
-
-def _measured(_: None, unit: Unit) -> List[Row]:
-    return list(unit.rows(unit))
+    return [row for unit in units for variant in unit.variants
+            for row in kept.rows[unit.subject(variant)]]
 
 
 def measure(robot_of: Callable[[], Robot], unit: Unit) -> Iterator[Row]:
     """Yield the rows of a unit that is a robot."""
     robot = robot_of()
-    judges = list(_judges(unit, robot))
+    judges = list(_learned(unit, robot))
     for recording in robot.normal():
-        for by in judges:
-            yield Row(by.subject, NORMAL, refused=by.refused) if by.refused else normal_row(
-                by.subject, by.system.judge(recording), by.system.expected_per_hour,
-                by.watched(robot.components), len(robot.components))
+        for subject, _, system, refused in judges:
+            yield Row(subject, NORMAL, refused=refused) if refused else normal_row(
+                subject, system.judge(recording), system.expected_per_hour,
+                _watched(system, robot.components), len(robot.components))
     for fault in robot.faults():
-        for by in judges:
-            if by.refused and by.of_faults:
-                yield Row(by.subject, fault.kind, fault.source, refused=by.refused)
-            elif by.of_faults:
-                yield fault_row(by.subject, fault, by.system.judge(fault.recording),
-                                by.watched(set(fault.culprits)))
+        for subject, variant, system, refused in judges:
+            if variant.faults:
+                yield (Row(subject, fault.kind, fault.source, refused=refused) if refused else
+                       fault_row(subject, fault, system.judge(fault.recording),
+                                 _watched(system, set(fault.culprits))))
 
 
-@dataclass(frozen=True)
-class _Judge:
-    """A system that has learned."""
-
-    subject: Subject
-    of_faults: bool  # whether it judges records with a fault, too
-    system: System
-    refused: str = ''  # why it cannot judge; empty: it can
-
-    def watched(self, components: Set[str]) -> Optional[int]:
-        """Return how many of some components it watches; None: it judges all together."""
-        watched = self.system.watched
-        return None if watched is None else len(watched & components)
-
-
-def _judges(unit: Unit, robot: Robot) -> Iterator[_Judge]:
+def _learned(unit: Unit, robot: Robot) -> Iterator[Tuple[Subject, Variant, System, str]]:
+    """Yield the systems, which have learned, and why they cannot judge; empty: they can."""
     learned_from: Dict[Learning, Tuple[Sequence[WindowedEvents], ...]] = {}
     for variant in unit.variants:
         learning = variant.learning
@@ -107,50 +82,40 @@ def _judges(unit: Unit, robot: Robot) -> Iterator[_Judge]:
         if learning not in learned_from:
             learned_from[learning] = robot.training(learning), robot.calibration(learning)
         training, calibration = learned_from[learning]
-        judge = _Judge(unit.subject(variant), variant.faults, variant.make(robot.graph))
+        system, refused = variant.make(robot.graph), ''
         try:
-            judge.system.train(training)
-            judge.system.calibrate(calibration)
+            system.train(training)
+            system.calibrate(calibration)
         except TooLittleError as error:
-            judge = replace(judge, refused=str(error))
-        yield judge
+            refused = str(error)
+        yield unit.subject(variant), variant, system, refused
+
+
+def _watched(system: System, components: Set[str]) -> Optional[int]:
+    """Return how many of some components it watches; None: it judges all together."""
+    return None if system.watched is None else len(system.watched & components)
 
 
 class KeptRows:
-    """Rows in a CSV file, and beside it a file of what they are of, and how much is whole.
-
-    Args:
-        path: of the CSV file; what it holds already is kept.
-        plan: what decides on the rows, besides their subjects.
-
-    Raises:
-        ValueError: it holds rows of another plan or of another method, or is another file.
-    """
+    """Rows in a CSV file, and beside it a file of what they are of, and how much is whole. The
+    plan is what decides on the rows besides their subjects, in words. What the file holds already
+    is kept; ValueError is raised if that is of another plan or of another method."""
 
     def __init__(self, path: Path, plan: str) -> None:
         self._path = path
         self._beside = path.with_suffix('.plan')
         self._plan = f'{_method()}\n{plan}\n'
-        self._rows: Dict[Subject, List[Row]] = {}
+        self.rows: Dict[Subject, List[Row]] = {}  # of each subject all, or it is not there
         if path.is_file():
             self._check()
         else:
             save(path, [], Row)
         self._remember(load(path, Row))
 
-    def has(self, subject: Subject) -> bool:
-        """Return whether all rows of a subject are there."""
-        return subject in self._rows
-
-    def of(self, subjects: Sequence[Subject]) -> List[Row]:
-        """Return the rows of subjects, in the order of these."""
-        return [row for subject in subjects for row in self._rows[subject]]
-
     def add(self, rows: Sequence[Row]) -> None:
         """Add all rows of some subjects."""
         with open(self._path, 'a', encoding='utf-8', newline='') as file:
-            csv.writer(file, lineterminator='\n').writerows(
-                flat(row).values() for row in rows)
+            csv.writer(file, lineterminator='\n').writerows(flat(row).values() for row in rows)
             file.flush()
             os.fsync(file.fileno())
         self._remember(rows)
@@ -167,7 +132,7 @@ class KeptRows:
     def _remember(self, rows: Sequence[Row]) -> None:
         """Note rows that the file has, and that it is whole."""
         for row in rows:
-            self._rows.setdefault(row.subject, []).append(row)
+            self.rows.setdefault(row.subject, []).append(row)
         with replacing(str(self._beside)) as temporary:
             Path(temporary).write_text(f'{self._path.stat().st_size}\n{self._plan}',
                                        encoding='utf-8')

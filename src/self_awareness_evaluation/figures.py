@@ -11,106 +11,71 @@ from self_awareness.calibration import confidence
 from self_awareness.calibration.confidence import Interval
 from self_awareness_evaluation.rows import NORMAL, Row
 
+_Item = TypeVar('_Item')
 _Key = TypeVar('_Key')
 
 SOON_S, WITHIN_S = 5.0, (1.0, 5.0, 50.0)  # times in which faults are to be found [s]
-
 NONE = '–'  # what a table says where there is nothing to tell
 LEAST_LATENCY_S = 0.05  # medians that differ by less are told as the same [s]
-
 _NOTHING: Interval = (math.nan, math.nan)
 
 
-@dataclass(frozen=True)
 class Quiet:
-    """How normal operation was judged."""
+    """How normal operation was judged: the time without a fault in rows."""
 
-    hours: float  # of it, together [h]
-    alarms: int  # false ones
-    interval: Interval  # 95 % interval of them, an hour
-    warnings: int  # times that a suspicion or an alarm began
-    standing: float  # share of the time in which an alarm stood; NaN: there is no time
-    evidence: Tuple[Tuple[str, int], ...]  # the alarms by what raised them, most often first
-    # False alarms an hour that the calibrations promised on average; NaN: none did.
-    expected: float
-    kept: float  # share of the robots with no more than were promised; NaN: there is no robot
-    # How many of a robot's components are watched on average, of how many; NaN: not known, or the
-    # system judges all together.
-    watched: float
-    components: float
-
-    @property
-    def per_hour(self) -> float:
-        """False alarms an hour; NaN: there is no time."""
-        return self.alarms / self.hours if self.hours else math.nan
-
-    @property
-    def warnings_per_hour(self) -> float:
-        """Suspicions or alarms an hour, likewise."""
-        return self.warnings / self.hours if self.hours else math.nan
-
-    @classmethod
-    def of(cls, rows: Sequence[Row]) -> Quiet:
-        """Return the figures of rows: of the time without a fault in them."""
-        hours, alarms = sum(row.hours for row in rows), sum(row.alarms for row in rows)
+    def __init__(self, rows: Sequence[Row]) -> None:
         robots = list(grouped(rows, lambda row: row.subject.robot).values())
         counts = [(sum(row.alarms for row in of_robot), sum(row.hours for row in of_robot))
                   for of_robot in robots]
         normal = [next((row for row in of_robot if row.fault == NORMAL), of_robot[0])
                   for of_robot in robots]
-        return cls(
-            hours, alarms, rate_interval(counts), sum(row.warnings for row in rows),
-            sum(row.standing_hours for row in rows) / hours if hours else math.nan,
-            tuple(Counter(text for row in rows for text in row.evidence if text).most_common()),
-            _mean([row.expected for row in normal]),
-            _mean([count <= row.expected * time for row, (count, time) in zip(normal, counts)
-                   if row.expected is not None]),
-            _mean([row.watched for row in normal]), _mean([row.components for row in normal]))
+        self.hours = sum(row.hours for row in rows)  # together; where this is 0, shares are NaN
+        self.alarms = sum(row.alarms for row in rows)  # false ones
+        self.per_hour = part_of((self.alarms, self.hours))
+        self.interval = rate_interval(counts)  # 95 % interval of that
+        self.warnings = sum(row.warnings for row in rows)  # times that WARN or an alarm began
+        self.warnings_per_hour = part_of((self.warnings, self.hours))
+        # Share of the time in which an alarm stood.
+        self.standing = part_of((sum(row.standing_hours for row in rows), self.hours))
+        # The alarms by what raised them, most often first.
+        self.evidence = Counter(
+            text for row in rows for text in row.evidence if text).most_common()
+        # False alarms an hour that the calibrations promised on average; NaN: none did.
+        self.expected = _mean([row.expected for row in normal])
+        # Share of the robots with no more than were promised; NaN: there is no robot.
+        self.kept = _mean([count <= row.expected * time for row, (count, time)
+                           in zip(normal, counts) if row.expected is not None])
+        # How many of a robot's components are watched on average, of how many; NaN: not known, or
+        # the system judges all together.
+        self.watched = _mean([row.watched for row in normal])
+        self.components = _mean([row.components for row in normal])
 
 
-@dataclass(frozen=True)
 class Found:
-    """How faults were found."""
+    """How faults were found, by the rows of their records. Two counts are those of which it is so,
+    and all of which it is known whether it is."""
 
-    # From the onset to the first alarm, of each record; infinite where there was none [s].
-    latencies_s: Tuple[float, ...]
-    # Of the alarms that name somebody where somebody is guilty, those that name a guilty one
-    # first, or among the first three, and the number of all of them.
-    first: Tuple[int, int]
-    among_three: Tuple[int, int]
-    # Likewise of what stands when the fault ends, whom it blames: a guilty one, or nobody where
-    # nobody is guilty.
-    at_end: Tuple[int, int]
-    # Of the alarms of which it is known, those that name who has nothing to do with the fault, and
-    # the number of all of them.
-    bystanders: Tuple[int, int]
-    noticed_s: Tuple[float, ...]  # to the first suspicion or alarm [s], likewise
-    stood_before: int  # records in which a false alarm stood at the onset
-    # Alarms for who was back already, and the number of records with somebody who was.
-    after: Tuple[int, int]
-
-    @classmethod
-    def of(cls, rows: Iterable[Row]) -> Found:
-        """Return the figures of rows with a fault."""
-        known = list(rows)
-        after = [row.after for row in known if row.after is not None]
-        return cls(
-            tuple(_or_never(row.latency_s) for row in known), _counted(row.first for row in known),
-            _counted(row.among_three for row in known),
-            _counted(row.right_at_end for row in known),
-            _counted(None if row.bystanders is None else row.bystanders > 0 for row in known),
-            tuple(_or_never(row.noticed_s) for row in known),
-            sum(row.stood_before for row in known), (sum(after), len(after)))
-
-    @property
-    def records(self) -> int:
-        """How many there are."""
-        return len(self.latencies_s)
-
-    @property
-    def median_s(self) -> float:
-        """The median latency [s]; infinite if fewer than half were found; NaN: no record."""
-        return median(self.latencies_s)
+    def __init__(self, rows: Sequence[Row]) -> None:
+        after = [row.after for row in rows if row.after is not None]
+        self.records = len(rows)
+        # From the onset to the first alarm, and to the first suspicion or alarm; infinite where
+        # there was none [s].
+        self.latencies_s = [_or_never(row.latency_s) for row in rows]
+        self.noticed_s = [_or_never(row.noticed_s) for row in rows]
+        # The median; infinite if fewer than half were found; NaN: there is no record.
+        self.median_s = median(self.latencies_s)
+        # Alarms that name a guilty one first, or among the first three.
+        self.first = counted(row.first for row in rows)
+        self.among_three = counted(row.among_three for row in rows)
+        # What stands when the fault ends, and blames a guilty one, or nobody where nobody is.
+        self.at_end = counted(row.right_at_end for row in rows)
+        # Alarms that name who has nothing to do with the fault.
+        self.bystanders = counted(
+            None if row.bystanders is None else row.bystanders > 0 for row in rows)
+        # Records in which a false alarm stood at the onset.
+        self.stood_before = sum(row.stood_before for row in rows)
+        # Alarms for who was back already, and the number of records with somebody who was.
+        self.after = sum(after), len(after)
 
     def within(self, seconds: float = math.inf) -> int:
         """Return how many were found in this time [s]."""
@@ -122,13 +87,13 @@ class Found:
 
     @property
     def interval(self) -> Interval:
-        """The 95 % interval of the share that was found."""
+        """The 95 % interval of that share."""
         return confidence.wilson(self.within(), self.records) if self.records else _NOTHING
 
 
-def grouped(rows: Iterable[Row], key: Callable[[Row], _Key]) -> Dict[_Key, List[Row]]:
-    """Return the rows by a key, in the order in which keys come first."""
-    found: Dict[_Key, List[Row]] = {}
+def grouped(rows: Iterable[_Item], key: Callable[[_Item], _Key]) -> Dict[_Key, List[_Item]]:
+    """Return rows, of whatever kind, by a key, in the order in which keys come first."""
+    found: Dict[_Key, List[_Item]] = {}
     for row in rows:
         found.setdefault(key(row), []).append(row)
     return found
@@ -146,8 +111,8 @@ def median(times_s: Sequence[float]) -> float:
     return median_low(times_s) if times_s else math.nan
 
 
-def part_of(counts: Tuple[int, int]) -> float:
-    """Return the first of two counts as a share of the second; NaN: that is 0."""
+def part_of(counts: Tuple[float, float]) -> float:
+    """Return the first of two numbers as a share of the second; NaN: that is 0."""
     return counts[0] / counts[1] if counts[1] else math.nan
 
 
@@ -171,7 +136,7 @@ def rate_interval(robots: Sequence[Tuple[int, float]]) -> Interval:
 
 def columns(rows: Sequence[Row], kinds: Sequence[str]) -> Dict[str, Any]:
     """Return all figures of rows as columns of a CSV file, with those of each kind of fault."""
-    quiet = Quiet.of(of_fault(rows, NORMAL))
+    quiet = Quiet(of_fault(rows, NORMAL))
     found: Dict[str, Any] = {
         'hours': quiet.hours, 'false_alarms': quiet.alarms, 'per_hour': quiet.per_hour,
         'per_hour_low': quiet.interval[0], 'per_hour_high': quiet.interval[1],
@@ -180,23 +145,22 @@ def columns(rows: Sequence[Row], kinds: Sequence[str]) -> Dict[str, Any]:
         'watched': quiet.watched, 'components': quiet.components,
         'evidence': '; '.join(f'{text} {number}' for text, number in quiet.evidence)}
     for kind in kinds:
-        found.update({f'{kind}: {name}': value for name, value in
-                      _of_kind(Found.of(of_fault(rows, kind))).items()})
+        each = Found(of_fault(rows, kind))
+        of_kind = {
+            'records': each.records, 'found': each.share(), 'low': each.interval[0],
+            'high': each.interval[1],
+            **{f'within {seconds:g} s': each.share(seconds) for seconds in WITHIN_S},
+            'median_s': each.median_s, 'first': part_of(each.first),
+            'among_three': part_of(each.among_three), 'at_end': part_of(each.at_end),
+            'bystanders': each.bystanders[0], 'stood_before': each.stood_before,
+            'alarms_after': each.after[0]}
+        found.update((f'{kind}: {name}', value) for name, value in of_kind.items())
     return {name: value if not isinstance(value, float) else
             f'{value:.4g}' if math.isfinite(value) else '' for name, value in found.items()}
 
 
-def _of_kind(found: Found) -> Dict[str, Any]:
-    low, high = found.interval
-    return {'records': found.records, 'found': found.share(), 'low': low, 'high': high,
-            **{f'within {seconds:g} s': found.share(seconds) for seconds in WITHIN_S},
-            'median_s': found.median_s, 'first': part_of(found.first),
-            'among_three': part_of(found.among_three), 'at_end': part_of(found.at_end),
-            'bystanders': found.bystanders[0],
-            'stood_before': found.stood_before, 'alarms_after': found.after[0]}
-
-
-def _counted(values: Iterable[Optional[bool]]) -> Tuple[int, int]:
+def counted(values: Iterable[Optional[bool]]) -> Tuple[int, int]:
+    """Return how many values are true, and how many are known."""
     known = [value for value in values if value is not None]
     return sum(known), len(known)
 
@@ -253,10 +217,11 @@ def of_all(counts: Tuple[int, int], joint: str = 'of') -> str:
     return f'{counts[0]} {joint} {counts[1]}' if counts[1] else NONE
 
 
-def interval(found: Found) -> str:
-    """Return the 95 % interval of the share that was found."""
+def with_interval(found: Found) -> str:
+    """Return the share that was found with its 95 % interval; dashes where there is no record."""
     low, high = found.interval
-    return NONE if math.isnan(low) else f'{100.0 * low:.0f}–{100.0 * high:.0f} %'
+    told = f'{100.0 * low:.0f}–{100.0 * high:.0f} %' if found.records else NONE
+    return f'{percent(found.share())} ({told})'
 
 
 @dataclass(frozen=True)
@@ -276,7 +241,7 @@ class Cell:
 
 def cells(rows: Sequence[Row], kinds: Mapping[str, Sequence[str]]) -> Dict[str, Cell]:
     """Return the figures of rows by title; kinds: of faults, by title."""
-    quiet = Quiet.of(rows)
+    quiet = Quiet(rows)
     found = {'false alarms': Cell(f'{quiet.alarms} in {quiet.hours:.1f} h',
                                   (quiet.alarms, quiet.hours), (0.0, 0.05)),
              'WARN': Cell(str(quiet.warnings), (quiet.warnings,), (1.0,))}
@@ -287,13 +252,13 @@ def cells(rows: Sequence[Row], kinds: Mapping[str, Sequence[str]]) -> Dict[str, 
         row for row in of_fault(rows, '')
         if not {row.fault, row.fault.partition(':')[0]} & set(known)]
     for title, of_title in by_title.items():
-        each = Found.of(of_title)
+        each = Found(of_title)
         median = f', {seconds(each.median_s)}' if math.isfinite(each.median_s) else ''
         found[title] = Cell(
             f'{each.within(SOON_S)} / {each.within()} of {each.records}{median}'
             if each.records else NONE,
             (each.within(SOON_S), each.within(), each.median_s), (0.0, 0.0, LEAST_LATENCY_S))
-    every = Found.of(of_fault(rows, ''))
+    every = Found(of_fault(rows, ''))
     found['alarms after a restart'] = Cell(of_all(every.after, 'after'), every.after[:1], (0.0,))
     for title, named in (('guilty first', every.first), ('guilty at the end', every.at_end)):
         found[title] = Cell(of_all(named), (named[1] - named[0],), (0.0,))

@@ -32,9 +32,10 @@ _OF_ABLATION = ('timers', 'wireless', 'jittery', 'wander', 'day_night', 'stalled
 _WARNED_ONLY = ('extra', 'unknown', 'unsubscribed')  # a suspicion, no alarm
 _AFTER_DEATH_S = 600.0  # of the ablation, which judges many times
 
+_Work = Callable[[argparse.Namespace, str], None]
+
 
 def add(parts: Any) -> None:
-    """Add the measurements to the parts of the program."""
     parser = parts.add_parser(
         'simulated', help='the simulated follow-me robot, in simulated time',
         description='Every system learns from the same records of the simulated robot, and judges '
@@ -88,8 +89,7 @@ def add(parts: Any) -> None:
                         'lists them (default: all)')
 
 
-def _add_common(parser: argparse.ArgumentParser,
-                work: Callable[[argparse.Namespace, str], None], at_a_time: str) -> None:
+def _add_common(parser: argparse.ArgumentParser, work: _Work, at_a_time: str) -> None:
     parser.set_defaults(work=work)
     options.add_output(parser, 'the sections of the pages, the figures and, in the folder '
                        f'{FULL}, the rows, from which an interrupted run goes on,')
@@ -97,9 +97,8 @@ def _add_common(parser: argparse.ArgumentParser,
                         help=f'{at_a_time} at a time (default: as many as there are cores)')
 
 
-def _add_robots(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace, str], None],
-                names: Sequence[str], number: str, robots_each: int, hours: float,
-                in_turn: str = '') -> None:
+def _add_robots(parser: argparse.ArgumentParser, work: _Work, names: Sequence[str], number: str,
+                robots_each: int, hours: float, in_turn: str = '') -> None:
     """Add the options of robots of families; number: the option that says how many of each."""
     _add_common(parser, work, 'robots')
     parser.add_argument('--families', nargs='+', choices=list(FAMILIES), default=names,
@@ -111,9 +110,9 @@ def _add_robots(parser: argparse.ArgumentParser, work: Callable[[argparse.Namesp
     options.add(parser, '--starts', partial(cli.count, most=MOST_STARTS), [2, 4], 'N', 'starts to '
                 f'train on, in turn{in_turn}; half as many, but one at least, are calibrated on')
     for name, what in (('--training', 'train'), ('--calibration', 'calibrate')):
-        options.add(parser, name, options.recorded_s, 150.0, 'S',
+        options.add(parser, name, options.within(10.0, 86400.0, 'seconds'), 150.0, 'S',
                     f'length of a recording to {what} on [s]')
-    options.add(parser, '--hours', options.hours, hours, 'H',
+    options.add(parser, '--hours', options.within(0.02, 1000.0, 'hours'), hours, 'H',
                 'normal operation that is watched, for each robot')
 
 
@@ -198,8 +197,7 @@ def _learnings(arguments: argparse.Namespace) -> List[Learning]:
             for starts in arguments.starts]
 
 
-def _own(seeds: Iterable[int], faults: Tuple[str, ...],
-         variants: Sequence[Variant]) -> List[Unit]:
+def _own(seeds: Iterable[int], faults: Tuple[str, ...], variants: Sequence[Variant]) -> List[Unit]:
     return [Unit(partial(experiment.measure, partial(simulated.own, seed, faults)), OWN,
                  f'{OWN} {seed}', tuple(variants)) for seed in seeds]
 

@@ -7,11 +7,9 @@ from typing import Any, Callable, Dict
 
 from self_awareness.commands import cli
 
-Parser = argparse.ArgumentParser
 
-
-def add(parser: Parser, name: str, kind: Callable[[str], Any], default: Any, metavar: str,
-        told: str) -> None:
+def add(parser: argparse.ArgumentParser, name: str, kind: Callable[[str], Any], default: Any,
+        metavar: str, told: str) -> None:
     """Add an option with a default; several values, where that is a sequence."""
     several = isinstance(default, (list, tuple))
     shown = ' '.join(map(str, default)) if several else str(default).replace('.0', '')
@@ -20,7 +18,8 @@ def add(parser: Parser, name: str, kind: Callable[[str], Any], default: Any, met
                         help=f'{told} (default: {shown})', **more)
 
 
-def add_output(parser: Parser, written: str, default: str = 'docs/evaluation') -> None:
+def add_output(parser: argparse.ArgumentParser, written: str,
+               default: str = 'docs/evaluation') -> None:
     """Add the option that says where results go; written: what they are."""
     parser.add_argument('-o', '--output', type=Path, default=Path(default), metavar='DIR',
                         help=f'where {written} go (default: {default})')
@@ -34,8 +33,3 @@ def within(least: float, most: float, what: str) -> Callable[[str], float]:
             raise ValueError(f'expected {what} from {least:g} to {most:g}, not {text}')
         return value
     return cli.checked(convert)
-
-
-recorded_s = within(10.0, 86400.0, 'seconds')  # argument type: length of a recording [s]
-hours = within(0.02, 1000.0, 'hours')  # argument type: how long something is watched [h]
-minutes = within(1.2, 60_000.0, 'minutes')  # argument type: how long something is watched [min]

@@ -27,17 +27,13 @@ from self_awareness_evaluation.variants import tuning_of
 
 OUTAGE = 'outage'  # kind of fault: what is wrong in a recording of a real robot
 
-RATE = 0.01
-"""The share of normal windows that may score below the threshold of systems that have one.
-
-More than in simulated time: in a recording of 30 s, a share of 0.001 is less than one window.
-"""
-
-MOST_SILENT = 0.1
-"""The paper's detector cannot judge a robot of which more normal windows are silent than this."""
+# The share of normal windows that may score below the threshold of systems that have one: more
+# than in simulated time, since in a recording of 30 s, 0.001 is less than one window.
+_RATE = 0.01
+# The paper's detector cannot judge a robot of which more normal windows are silent than this.
+_MOST_SILENT = 0.1
 
 Span = Tuple[float, float]  # start and end, in seconds from the recording's first message
-
 END = 1e9  # stands for the end of a recording [s]
 
 
@@ -59,22 +55,16 @@ def _social(judged: int, first: int, second: int) -> Case:
                 None, ((0.0, END),))
 
 
-_WHEELED = 'wheeled_robot/'
-
 CASES = (
     # What is abnormal is told in the README of the data. After an outage comes a burst.
-    Case('wheeled_robot, 13 February', BagPart(f'{_WHEELED}feb13_normal.bag', 24.0, 65.0),
-         BagPart(f'{_WHEELED}feb13_normal.bag', 65.0), f'{_WHEELED}feb13_outage.bag',
+    Case('wheeled_robot, 13 February', BagPart('wheeled_robot/feb13_normal.bag', 24.0, 65.0),
+         BagPart('wheeled_robot/feb13_normal.bag', 65.0), 'wheeled_robot/feb13_outage.bag',
          (27.9, 36.1), ((24.0, 27.9), (40.0, END))),
-    Case('wheeled_robot, 17 January', BagPart(f'{_WHEELED}jan17_normal.bag', 15.0, 51.0),
-         BagPart(f'{_WHEELED}jan17_normal.bag', 55.0), f'{_WHEELED}jan17_outage.bag',
+    Case('wheeled_robot, 17 January', BagPart('wheeled_robot/jan17_normal.bag', 15.0, 51.0),
+         BagPart('wheeled_robot/jan17_normal.bag', 55.0), 'wheeled_robot/jan17_outage.bag',
          # From 42 s on all nodes stall for up to 1.8 s at a time: it is not normal, nor an outage.
          (66.0, END), ((0.0, 42.0),)),
-    _social(101, 102, 103),
-    _social(102, 101, 103),
-    _social(103, 101, 102),
-)
-"""All cases."""
+    _social(101, 102, 103), _social(102, 101, 103), _social(103, 101, 102))
 
 
 def check_data(data: Path) -> None:
@@ -89,12 +79,10 @@ def check_data(data: Path) -> None:
 class JudgedCase(NamedTuple):
     """What a system says of a recording."""
 
-    # Stretches of time.
     alarms: Sequence[SystemAlarm]
     suspicions: Sequence[SystemAlarm]
-    # Stamps of the first message and of the last one [ns].
-    begin: int
-    end: int
+    begin: int  # stamp of the first message [ns]
+    end: int  # and of the last one
     watched: int  # event types, or topics, that it watches at all
 
 
@@ -105,11 +93,10 @@ def rows(case: Case, data: Path, unit: Unit) -> Iterator[Row]:
         try:
             judged = SYSTEMS[variant.system](case, data, tuning_of(variant.change))
         except TooLittleError as error:
-            yield Row(subject, NORMAL, refused=str(error))
-            if case.outage is not None:
-                yield Row(subject, OUTAGE, refused=str(error))
-            continue
-        yield from case_rows(subject, case, judged)
+            for kind in (NORMAL,) if case.outage is None else (NORMAL, OUTAGE):
+                yield Row(subject, kind, refused=str(error))
+        else:
+            yield from case_rows(subject, case, judged)
 
 
 def _evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
@@ -119,13 +106,11 @@ def _evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
     trained = trained_on.model
     watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks, limits)
                if not math.isnan(limit)}
-    recording = recordings.read(trained, _below(data, BagPart(case.judged)))
+    found = recordings.read(trained, _below(data, BagPart(case.judged)))
     verdicts = evidence_judge(trained, DetectorParameters())(RecordingEvents(
-        recording.event_types, recording.stamps, recording.ids, recording.end,
-        attributes=recording.attributes))
-    judged = judged_of(verdicts, recording.event_types, trained.graph)
-    return JudgedCase(judged.alarms, judged.suspicions, recording.origin, recording.end,
-                      len(watched))
+        found.event_types, found.stamps, found.ids, found.end, attributes=found.attributes))
+    judged = judged_of(verdicts, found.event_types, trained.graph)
+    return JudgedCase(judged.alarms, judged.suspicions, found.origin, found.end, len(watched))
 
 
 def _learned(make: Callable[[], Union[Paper, FrequencyMonitor]], case: Case, data: Path,
@@ -149,12 +134,10 @@ def _learned(make: Callable[[], Union[Paper, FrequencyMonitor]], case: Case, dat
     return JudgedCase(system.judge(judged).alarms, (), found[-1].origin, found[-1].end, watched)
 
 
-SYSTEMS: Dict[str, Callable[[Case, Path, Tuning], JudgedCase]] = {
+SYSTEMS: Dict[str, Callable[[Case, Path, Tuning], JudgedCase]] = {  # by name
     'evidence': _evidence,
-    'paper': partial(_learned, lambda: Paper(RATE, MOST_SILENT)),
-    'frequency_learned': partial(_learned, lambda: FrequencyMonitor(RATE)),
-}
-"""The systems by name."""
+    'paper': partial(_learned, lambda: Paper(_RATE, _MOST_SILENT)),
+    'frequency_learned': partial(_learned, lambda: FrequencyMonitor(_RATE))}
 
 
 def _trained(data: Path, tuning: Tuning, *parts: BagPart) -> Trained:
@@ -167,7 +150,6 @@ def _below(data: Path, part: BagPart) -> BagPart:
 
 
 def case_rows(subject: Subject, case: Case, judged: JudgedCase) -> Iterator[Row]:
-    """Yield the rows of a case."""
     def at(second: float) -> int:
         return min(judged.begin + nanoseconds(second), judged.end)
 

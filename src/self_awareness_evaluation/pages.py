@@ -18,12 +18,10 @@ from self_awareness_evaluation.figures import NONE, cells, columns, grouped, tab
 from self_awareness_evaluation.records import NORMAL
 from self_awareness_evaluation.rows import Row, load
 
+# The page that is read in two minutes, and the one for who wants to know more.
 RESULTS, RESEARCH = 'README.md', 'research.md'
-"""The page that is read in two minutes, and the one for who wants to know more."""
-
+# Folder below that of the pages for the rows of all records, which is not kept in the repository.
 FULL = 'full'
-"""Folder below that of the pages for the rows of all records, which is not kept in the repository.
-"""
 
 _WRITTEN = re.compile(r'^Written by `(?P<command>.+?)`( on [\d-]+)?'
                       r'(, method (?P<method>\d+))?; do not edit', re.MULTILINE)
@@ -47,15 +45,9 @@ def machine() -> Dict[str, Any]:
 
 
 def write_section(page: Path, name: str, text: str, title: str = '') -> None:
-    """Replace the text between the markers `<!-- NAME -->` and `<!-- /NAME -->` of a page.
-
-    A page that is not there is made, and one without the section gets it at its end, below a
-    title if there is one.
-
-    Raises:
-        ValueError: the page has no such section, and there is no title.
-        OSError: the page cannot be read or written.
-    """
+    """Replace the text between the markers `<!-- NAME -->` and `<!-- /NAME -->` of a page. A page
+    that is not there is made, and one without the section gets it at its end, below a title if
+    there is one; without one, raise ValueError."""
     told = '# Measured\n' if title and not page.is_file() else page.read_text(encoding='utf-8')
     if title and f'<!-- {name} -->' not in told:
         told += f'\n## {title}\n\n<!-- {name} -->\n<!-- /{name} -->\n'
@@ -88,24 +80,19 @@ def write(folder: Path, section: Section, rows: Sequence[Row], command: str) -> 
     """Write a section of the pages, and the figures; return the names of the files."""
     figures = folder / f'{section.name}.csv'
     kinds = sorted({row.fault.partition(':')[0] for row in rows} - {NORMAL})
-    table = [{**{name: getattr(of_group[0].subject, name) for name in
+    # Those of each subject, of all groups together and of each group.
+    groups: List[Callable[[Row], str]] = [lambda _: 'all']
+    groups += [] if section.group is None else [section.group]
+    table = [{**{name: getattr(subject, name) for name in
                  ('part', 'learning', 'system', 'change', 'budget')},
-              'of': group, **columns(of_group, kinds)}
-             for group, of_group in _groups(section, rows)]
+              'of': name, **columns(of_group, kinds)}
+             for group in groups for (name, subject), of_group in grouped(
+                 rows, lambda row: (group(row), replace(row.subject, robot=''))).items()]
     save_table(str(figures), list(table[0]), [list(each.values()) for each in table])
     for page, lines in section.pages.items():
         text = '\n'.join([written_by(command), '', *lines])
         write_section(folder / page, section.name, text, section.title)
     return [rows_path(folder, section.name), figures, *(folder / page for page in section.pages)]
-
-
-def _groups(section: Section, rows: Sequence[Row]) -> List[Tuple[str, List[Row]]]:
-    """Return the rows of each subject, of all groups together and of each group."""
-    def of(group: Callable[[Row], str]) -> List[Tuple[str, List[Row]]]:
-        return [(name, of_group) for (name, _), of_group in grouped(
-            rows, lambda row: (group(row), replace(row.subject, robot=''))).items()]
-
-    return of(lambda _: 'all') + ([] if section.group is None else of(section.group))
 
 
 @dataclass(frozen=True)
@@ -145,11 +132,7 @@ def find(docs: Path) -> List[Written]:
 
 
 def check(docs: Path) -> List[str]:
-    """Return a line for each page.
-
-    Raises:
-        ValueError: no command wrote a page there.
-    """
+    """Return a line for each page; raise ValueError if no command wrote one there."""
     found = find(docs)
     if not found:
         raise ValueError(f'{docs}: holds no page that `evaluate` wrote')
@@ -159,7 +142,6 @@ def check(docs: Path) -> List[str]:
 
 
 def add_compare(parts: Any) -> None:
-    """Add the command `compare` to the parts of the program."""
     parser = parts.add_parser(
         'compare', help='two versions side by side, by what the same commands measured',
         description='Writes a page about two folders that families, simulated, ablation or '
@@ -172,11 +154,8 @@ def add_compare(parts: Any) -> None:
 
 
 def _compare(arguments: argparse.Namespace, command: str) -> None:
-    """Write the page.
-
-    Raises:
-        ValueError: a folder holds no results, or the two were measured by other commands.
-    """
+    """Write the page; raise ValueError if a folder holds no results, or the two were measured by
+    other commands."""
     before, after = arguments.before, arguments.after
     lines = [_INTRODUCTION.format(written=written_by(command))]
     names = _folders(before)
@@ -193,8 +172,7 @@ def _compare(arguments: argparse.Namespace, command: str) -> None:
                              f'{after / name} by "{differing[1]}"; run the same commands')
         lines += ['## Of the commands', '', *(f'    {each}' for each in commands[0]), '']
         for path in _files(before / name):
-            ours, theirs = (load(top / name / FULL / path, Row)
-                            for top in (before, after))
+            ours, theirs = (load(top / name / FULL / path, Row) for top in (before, after))
             lines += [f'### {path}', '', *_section(ours, theirs), '']
     arguments.output.mkdir(parents=True, exist_ok=True)
     path = arguments.output / 'before_after.md'
@@ -229,12 +207,12 @@ def _section(before: List[Row], after: List[Row]) -> List[str]:
     same = sum(one == other for key in ours for one, other in zip(ours[key], theirs.get(key, [])))
     lines = [f'Rows that are the same to the last digit: {same} of '
              f'{max(len(before), len(after))}.', '']
-    names = list(dict.fromkeys(row.fault for row in [*before, *after] if row.fault != NORMAL))
-    kinds = {name: [name] for name in [*names, *(['crash'] if any(
-        name.startswith('crash:') for name in names) else [])]}
-    columns = _compared(before, after, kinds, lambda _: '')
-    head, *body = ([column[row] for column in columns] for row in range(1, len(columns[0])))
-    lines += table(head, body)
+    kinds = {row.fault: [row.fault] for row in [*before, *after] if row.fault != NORMAL}
+    if any(name.startswith('crash:') for name in kinds):
+        kinds['crash'] = ['crash']
+    # Who judged is a column here, and below a row for each family.
+    rows = list(zip(*_compared(before, after, kinds, lambda _: '')))[1:]
+    lines += table(rows[0], rows[1:])
     if len({row.subject.family for row in before}) > 1:
         head, *body = _compared(before, after, kinds, lambda row: row.subject.family)
         lines += ['', *table(head, body)]
@@ -255,8 +233,10 @@ def _compared(before: List[Row], after: List[Row], kinds: Dict[str, List[str]],
     keys = list(dict.fromkeys([*sides[0], *sides[1]]))
     titles = [title for title in next(iter(sides[0].values()))
               if any(side[key][title].text != NONE for side in sides for key in side)]
-    body = [[[side[key][title].text if key in side else NONE for side in sides]
-             for title in titles] for key in keys]
-    return [['records', 'judged by', *titles], *(
-        [*key, *(one if one == other else f'{one} → **{other}**' for one, other in row)]
-        for key, row in zip(keys, body))]
+
+    def cell(key: Tuple[str, str], title: str) -> str:
+        one, other = (side[key][title].text if key in side else NONE for side in sides)
+        return one if one == other else f'{one} → **{other}**'
+
+    return [['records', 'judged by', *titles],
+            *([*key, *(cell(key, title) for title in titles)] for key in keys)]

@@ -22,14 +22,13 @@ Subscriptions = FrozenSet[Tuple[str, str]]  # node and topic of all that nodes s
 
 NORMAL = 'normal'  # what a record without a fault is called, in place of the kind of the fault
 
+# Where records come from: robots drawn by seed, the simulated follow-me robot, real robots.
 FAMILIES, OWN, REAL = 'families', 'own robot', 'recordings'
-"""Where records come from: robots drawn by seed, the simulated follow-me robot, real robots."""
-
 ALARM, SUSPICION = 'ERROR', 'WARN'  # levels, as diagnostics call them
 EXCUSES = ('busy machine', 'all silent', 'new mode')  # kinds of alarms that are no node's fault
 
+# The share of normal windows of the calibration that may score below the threshold.
 FALSE_POSITIVE_RATE = 0.001
-"""The share of normal windows of the calibration that may score below the threshold."""
 
 
 @dataclass(frozen=True)
@@ -40,18 +39,15 @@ class WindowedEvents:
     stamps: np.ndarray  # int64 [ns], at least one
     ids: np.ndarray  # uint32, one for each stamp
     end: int  # the recording lasts until then [ns], exclusive, whether something comes or not
-    # Of the messages, uint32, one for each stamp; None: not known.
-    attributes: Optional[np.ndarray] = None
+    attributes: Optional[np.ndarray] = None  # of messages, uint32, as many; None: not known
     # What there was from a time [ns] on, in the order of time; empty: not known.
     subscriptions: Sequence[Tuple[int, Subscriptions]] = ()
     # How the recorder's machine was, one stretch of time after the other; empty: not known.
     waiting: Sequence[Waiting] = ()
 
     def encoded(self, vocabulary: Sequence[EventType]) -> WindowedEvents:
-        """Return the same recording with the types of a vocabulary first, as the bag reader does.
-
-        The ids after those stand for the types that are not in the vocabulary.
-        """
+        """Return the same recording with the types of a vocabulary first, as the bag reader does;
+        the ids after those stand for types that are not in it."""
         ids = {event_type: index for index, event_type in enumerate(vocabulary)}
         translation = np.array([ids.setdefault(event_type, len(ids))
                                 for event_type in self.event_types], dtype=np.uint32)
@@ -78,13 +74,10 @@ class WindowedEvents:
 
 def stamps_by(recording: WindowedEvents, key: Callable[[EventType], _Key]
               ) -> Dict[_Key, np.ndarray]:
-    """Return the stamps of the events by something of their types, such as the topic [ns].
-
-    What no event has is not in it.
-    """
+    """Return the stamps [ns] of the events by something of their types, such as the topic, but
+    what no event has."""
     keys: Dict[_Key, int] = {}
-    numbers = [keys.setdefault(key(event_type), len(keys))
-               for event_type in recording.event_types]
+    numbers = [keys.setdefault(key(each), len(keys)) for each in recording.event_types]
     # Few bits: these are sorted by radix, which is five times as fast.
     of_events = np.array(numbers, dtype=np.min_scalar_type(len(keys)))[recording.ids]
     order = np.argsort(of_events, kind='stable')
@@ -142,12 +135,11 @@ class Robot:
     components: Set[str]  # of the robot
     # Publisher, topic and subscriber, as a training while the robot runs finds it.
     graph: Set[Tuple[str, str, str]]
-    # Return the recordings that are learned from.
+    # Return recordings: those that are learned from, normal operation, and those with a fault.
     training: Callable[[Learning], Sequence[WindowedEvents]]
     calibration: Callable[[Learning], Sequence[WindowedEvents]]
-    # Returns normal operation, recording by recording.
     normal: Callable[[], Iterable[WindowedEvents]]
-    faults: Callable[[], Iterable[FaultRecord]]  # returns the recordings with a fault
+    faults: Callable[[], Iterable[FaultRecord]]
 
 
 @dataclass(frozen=True)
@@ -200,16 +192,12 @@ class Judged:
 
 
 class System(Protocol):
-    """A detector of faults; it learns, is calibrated, and then judges."""
+    """A detector of faults; it learns from normal operation, is calibrated by some that was not
+    trained on, and then judges."""
 
-    def train(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Learn from normal operation."""
-
-    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Choose the threshold by normal operation that was not trained on."""
-
-    def judge(self, recording: WindowedEvents) -> Judged:
-        """Judge a recording."""
+    def train(self, recordings: Sequence[WindowedEvents]) -> None: ...
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None: ...
+    def judge(self, recording: WindowedEvents) -> Judged: ...
 
     @property
     def watched(self) -> Optional[Set[str]]:

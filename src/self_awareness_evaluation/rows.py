@@ -18,14 +18,12 @@ from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.records import (ALARM, EXCUSES, NORMAL, REAL, FaultRecord, Judged,
                                                SystemAlarm)
 
+# An alarm that is raised so soon after the fault is over belongs to it: a node that comes back is
+# no normal operation yet [s].
 AFTERMATH_S = 5.0
-"""An alarm that is raised so soon after the fault is over belongs to it: a node that comes back is
-no normal operation yet [s]."""
 
 HOUR_S = 3600.0
-
 _BETWEEN = '; '  # texts in one cell
-
 _Row = TypeVar('_Row')
 
 
@@ -59,15 +57,12 @@ class Row:
     standing_hours: float = 0.0  # for how long an alarm stood in it [h]
     warnings: int = 0  # times that a suspicion or an alarm began in it
     evidence: Tuple[str, ...] = ()  # what raised each alarm in it, in the system's words
-    # False alarms an hour that the calibration told; None: it did not say.
-    expected: Optional[float] = None
+    expected: Optional[float] = None  # false alarms an hour, by the calibration; None: not told
     # How many components the system watches, of a record without a fault; of one with a fault, how
     # many of the guilty ones. None: it judges all together, or is not known.
     watched: Optional[int] = None
     components: Optional[int] = None  # how many there are; None: not known
-    # Whether an alarm stood at the onset, a false one; only when it has cleared can another one be
-    # raised.
-    stood_before: bool = False
+    stood_before: bool = False  # whether a false alarm stood at the onset: no other can be raised
     latency_s: Optional[float] = None  # to the first alarm raised after the onset; None: none was
     # To the first suspicion or alarm; None: none, or one stood at the onset.
     noticed_s: Optional[float] = None
@@ -87,8 +82,7 @@ class Row:
     # None: there is none, or it is not over.
     opened_s: Optional[float] = None
     closed_s: Optional[float] = None
-    # Alarms for who was back already, all of them false; None: the fault lasts.
-    after: Optional[int] = None
+    after: Optional[int] = None  # false alarms for who was back already; None: the fault lasts
     refused: str = ''  # why nothing could be judged; empty: it was
 
     @property
@@ -97,12 +91,11 @@ class Row:
         None: nothing stands, or who is guilty is not known."""
         if not self.level or self.subject.part == REAL:
             return None
-        return self.culprit in self.source.split('; ')
+        return self.culprit in self.source.split(_BETWEEN)
 
 
 def normal_row(subject: Subject, judged: Judged, expected: Optional[float] = None,
                watched: Optional[int] = None, components: Optional[int] = None) -> Row:
-    """Measure a record of normal operation."""
     row = Row(subject, NORMAL, expected=expected, watched=watched, components=components)
     return _quiet(row, judged, np.ones(len(judged.start), dtype=bool), judged.alarms)
 
@@ -114,19 +107,22 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged,
     row = _quiet(Row(subject, record.kind, record.source, watched=watched), judged,
                  judged.start + DEFAULT_WINDOW <= onset,
                  [alarm for alarm in judged.alarms if alarm.start <= onset])
-    alarms, after = judged.alarms, None
+    row = replace(row, noticed_s=_noticed_s(judged, onset),
+                  stood_before=any(each.stands_at(onset) for each in judged.alarms))
+    alarms = judged.alarms
     if record.back is not None:
         end = record.back + nanoseconds(AFTERMATH_S)
-        alarms = [each for each in judged.alarms if each.start <= end]
-        after = len(judged.alarms) - len(alarms)
+        alarms = [each for each in alarms if each.start <= end]
+        row = replace(row, after=len(judged.alarms) - len(alarms))
     alarm = first_alarm(alarms, onset)
-    row = replace(
-        row, after=after, noticed_s=_noticed_s(judged, onset),
-        stood_before=any(each.stands_at(onset) for each in judged.alarms))
     if alarm is not None:
         row = replace(row, latency_s=(alarm.start - onset) / SECOND_NS)
-        if alarm.suspects is not None:
-            row = _named(row, alarm.suspects, record)
+        named = alarm.suspects
+        if named is not None and record.culprits:
+            guilty = [suspect in record.culprits for suspect in named]
+            row = replace(row, first=any(guilty[:1]), among_three=any(guilty[:3]))
+        if named is not None and record.involved is not None:
+            row = replace(row, bystanders=len(set(named) - record.involved))
     return at_end(row, [*judged.alarms, *judged.suspicions], onset, record.ends)
 
 
@@ -140,17 +136,15 @@ def _quiet(row: Row, judged: Judged, early: np.ndarray, alarms: Sequence[SystemA
     counted = early & ~judged.settling
     begins = np.diff((judged.noticed & early).astype(np.int8), prepend=0) == 1
     return replace(row, hours=_hours(counted), alarms=len(alarms),
-                   standing_hours=_hours(judged.standing & counted),
-                   warnings=int(begins.sum()),
+                   standing_hours=_hours(judged.standing & counted), warnings=int(begins.sum()),
                    evidence=tuple(alarm.evidence for alarm in alarms))
 
 
 def at_end(row: Row, found: Sequence[SystemAlarm], onset: int, end: int) -> Row:
     """Return the row of a fault with what is said when it ends; found: alarms, then suspicions, of
     which an alarm goes first."""
-    standing = [each for each in found if each.stands_at(end)]
-    if standing:
-        last = standing[0]
+    last = next((each for each in found if each.stands_at(end)), None)
+    if last is not None:
         row = replace(row, level=last.level, culprit=last.culprit, kind=last.kind,
                       excused=last.kind in EXCUSES)
     else:
@@ -171,15 +165,6 @@ def _noticed_s(judged: Judged, onset: int) -> Optional[float]:
         return None
     first = ends[noticed & (ends > onset)][:1]
     return (int(first[0]) - onset) / SECOND_NS if len(first) else None
-
-
-def _named(row: Row, suspects: Sequence[str], record: FaultRecord) -> Row:
-    """Return the row with whom an alarm names."""
-    if record.culprits:
-        guilty = [suspect in record.culprits for suspect in suspects]
-        row = replace(row, first=any(guilty[:1]), among_three=any(guilty[:3]))
-    return row if record.involved is None else replace(
-        row, bystanders=len(set(suspects) - record.involved))
 
 
 def _hours(windows: np.ndarray) -> float:
@@ -211,11 +196,8 @@ def save(path: Path, rows: Sequence[_Row], row_type: Type[_Row]) -> None:
 
 
 def load(path: Path, row_type: Type[_Row]) -> List[_Row]:
-    """Read what save() wrote. Columns that are not known are skipped.
-
-    Raises:
-        ValueError: it is not such a table; names the file and the line.
-    """
+    """Read what save() wrote, without columns that are not known; raise ValueError, with the line,
+    if it is not such a table."""
     with open(path, encoding='utf-8', newline='') as file:
         reader = csv.DictReader(file)
         rows = []

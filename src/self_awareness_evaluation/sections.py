@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from operator import attrgetter
-from typing import Callable, Dict, List, Sequence, Tuple
+from typing import Callable, Dict, List, Mapping, Sequence, Tuple
 
 from self_awareness import Tuning
 from self_awareness.reporting.text import number_of
@@ -12,8 +12,8 @@ from self_awareness_evaluation.families.protocol import DEATH, KINDS, NEVER, SEL
 from self_awareness_evaluation.families.scene import (CRASH, FLOOD, HALF_RATE, LATE, MISSES, OTHER,
                                                       RESTART, SILENT, STARVED)
 from self_awareness_evaluation.figures import (NONE, WITHIN_S, Cell, Found, Quiet, cells, grouped,
-                                               interval, median, number, of_all, of_fault, part,
-                                               percent, rate, seconds, share, table)
+                                               median, number, of_all, of_fault, part, percent,
+                                               rate, seconds, share, table, with_interval)
 from self_awareness_evaluation.outages import CASES, END, OUTAGE, Case, Span
 from self_awareness_evaluation.pages import RESEARCH, RESULTS, Section
 from self_awareness_evaluation.records import NORMAL
@@ -21,13 +21,11 @@ from self_awareness_evaluation.rows import HOUR_S, Row
 from self_awareness_evaluation.simulated import WITHIN_S as AIMED_S
 from self_awareness_evaluation.variants import Variant
 
-OWN_TITLE, FAMILIES_TITLE = 'The simulated robot', 'Robots of other kinds'
-"""Above the sections, on each page."""
+OWN_TITLE, FAMILIES_TITLE = 'The simulated robot', 'Robots of other kinds'  # on each page
+FALSE_ALARMS, EVERY_CRASH = 'false alarms an hour (95 %)', 'every crash'
+_RIGHT_NODE = 'the right node first / at the end'
 
-FALSE_ALARMS = 'false alarms an hour (95 %)'
-EVERY_CRASH = 'every crash'
-
-TOLD: Dict[str, str] = {
+TOLD: Dict[str, str] = {  # faults that a user is told of, in words
     'crash:motors': 'a node dies (86 Hz)',
     'crash:face_detection': 'a node dies (often silent)',
     EVERY_CRASH: 'any node dies',
@@ -38,19 +36,14 @@ TOLD: Dict[str, str] = {
     'lat': 'a node answers 60 ms later (subscribers known)',
     'order': 'a node publishes two topics in another order',
     'ac': 'the clock of a computer drifts now and then',
-    'stale:slam': 'stamps stand still',
-}
-"""Faults that a user is told of, in words."""
+    'stale:slam': 'stamps stand still'}
 
+# Faults that are a suspicion, or may be, and the time in which one is aimed at [s].
 _NOTICED_S: Dict[str, float] = {'extra': 5.0, 'unknown': 5.0, **AIMED_S}
-"""Faults that are a suspicion, or may be, and the time in which one is aimed at [s]."""
-
 ALL = 'all'  # families together
 _SUSPICIONS = (OTHER, NEVER)  # that are no alarms
-
-_MOST_SOURCES = 2
 _FAMILY = attrgetter('subject.family')  # of a row
-_WITHIN = ' / '.join(f'{each:g}' for each in WITHIN_S)
+_CRASHES = f'crashes, within {" / ".join(f"{each:g}" for each in WITHIN_S)} s'
 
 # Of the ablation, by column.
 _KINDS: Dict[str, Tuple[str, ...]] = {
@@ -68,7 +61,7 @@ def simulated(rows: Sequence[Row]) -> Section:
     subject = rows[0].subject
     seeds = [name.rpartition(' ')[2] for name in grouped(rows, lambda row: row.subject.robot)]
     told = (f'Seeds {seeds[0]} to {seeds[-1]}; learned from {subject.learning}; '
-            f'{Quiet.of(rows).hours / len(by_system):.3g} h without a fault, those before the '
+            f'{Quiet(rows).hours / len(by_system):.3g} h without a fault, those before the '
             'onsets included.')
     return Section('simulated', OWN_TITLE, {
         RESULTS: [told, '', *_told_in_words(by_system[subject.system])],
@@ -78,32 +71,27 @@ def simulated(rows: Sequence[Row]) -> Section:
 
 def _told_in_words(rows: Sequence[Row]) -> List[str]:
     """Return the table of the first system, in words."""
-    body = []
-    for name, of_kind in _kinds(rows).items():
-        if name in TOLD:
-            found = Found.of(of_kind)
-            body.append([TOLD[name], f'{percent(found.share())} ({interval(found)})',
-                         seconds(found.median_s), f'{part(found.first)} / {part(found.at_end)}'])
-    return [*table(['what happens', 'alarm (95 %)', 'median', 'the right node first / at the end'],
-                   body), '',
-            f'False alarms an hour: {rate(Quiet.of(rows))}.']
+    found = {name: Found(of_kind) for name, of_kind in _kinds(rows).items() if name in TOLD}
+    return [*table(['what happens', 'alarm (95 %)', 'median', _RIGHT_NODE], [
+        [TOLD[name], with_interval(each), seconds(each.median_s), _right_node(each)]
+        for name, each in found.items()]), '', f'False alarms an hour: {rate(Quiet(rows))}.']
 
 
 def _by_fault(by_system: _BySystem) -> List[str]:
-    quiet = {name: Quiet.of(rows) for name, rows in by_system.items()}
-    body = [[FALSE_ALARMS, *(rate(each) for each in quiet.values())],
-            ['WARN or alarm an hour',
-             *(number(each.warnings_per_hour) for each in quiet.values())],
+    quiet = [Quiet(rows) for rows in by_system.values()]
+    normal = [Quiet(of_fault(rows, NORMAL)) for rows in by_system.values()]
+    body = [[FALSE_ALARMS, *map(rate, quiet)],
+            ['WARN or alarm an hour', *(number(each.warnings_per_hour) for each in quiet)],
             ['components watched', *(
                 f'{each.watched:.3g} of {each.components:.3g}' if each.watched >= 0.0 else NONE
-                for each in (Quiet.of(of_fault(rows, NORMAL)) for rows in by_system.values()))]]
+                for each in normal)]]
     return table(['fault', *by_system], [*body, *_rows(by_system, share)])
 
 
 def _named(by_system: _BySystem) -> List[str]:
     def cell(found: Found) -> str:
         return ' / '.join(part(each) for each in (found.first, found.among_three, found.at_end))
-    named = [row for row in _rows(by_system, cell) if set(row[1:]) != {cell(Found.of([]))}]
+    named = [row for row in _rows(by_system, cell) if set(row[1:]) != {cell(Found([]))}]
     return ['First / among three / when the fault ends, where nobody is right if no node is '
             'guilty.', '', *table(['fault', *by_system], named)]
 
@@ -111,21 +99,19 @@ def _named(by_system: _BySystem) -> List[str]:
 def _noticed(by_system: _BySystem) -> List[str]:
     body = []
     for kind, within_s in _NOTICED_S.items():
-        found = [Found.of(of_fault(rows, kind)) for rows in by_system.values()]
-        if found[0].records:
-            in_time = [sum(each_s <= within_s for each_s in each.noticed_s) for each in found]
+        times_s = [Found(of_fault(rows, kind)).noticed_s for rows in by_system.values()]
+        if times_s[0]:
             body.append([kind, f'{within_s:g} s', *(
-                f'{part((number_of, each.records))}, {seconds(median(each.noticed_s))}'
-                for number_of, each in zip(in_time, found))])
+                f'{part((sum(time <= within_s for time in each), len(each)))}, '
+                f'{seconds(median(each))}' for each in times_s)])
     return ['WARN or alarm in the time that is aimed at, and the median time to it.', '',
             *table(['fault', 'within', *by_system], body)]
 
 
 def _rows(by_system: _BySystem, cell: Callable[[Found], str]) -> List[List[str]]:
     """Return a row of a table for every fault."""
-    kinds = {name: _kinds(rows) for name, rows in by_system.items()}
-    return [[fault, *(cell(Found.of(of_system[fault])) for of_system in kinds.values())]
-            for fault in next(iter(kinds.values()))]
+    kinds = [_kinds(rows) for rows in by_system.values()]
+    return [[fault, *(cell(Found(each[fault])) for each in kinds)] for fault in kinds[0]]
 
 
 def _kinds(rows: Sequence[Row]) -> Dict[str, List[Row]]:
@@ -143,7 +129,7 @@ def families(rows: Sequence[Row]) -> Section:
                            == (main.system, main.budget)), lambda row: row.subject.learning)
     names = list(grouped(rows, _FAMILY))
     seeds = grouped(rows, lambda row: row.subject.robot.rpartition(' ')[2])
-    hours = Quiet.of(of_fault(next(iter(by_learning.values())), NORMAL)).hours
+    hours = Quiet(of_fault(next(iter(by_learning.values())), NORMAL)).hours
     told = (f'{len(names)} families, seeds {", ".join(seeds)}, {hours:.3g} h of normal '
             f'operation; learned from {" and from ".join(by_learning)}.')
     return Section('families', FAMILIES_TITLE, {
@@ -160,44 +146,44 @@ def started(learning: str) -> str:
 
 def _results(by_learning: Dict[str, List[Row]]) -> List[str]:
     """Return the table of all families together, in words; who is named, by the last learning."""
-    body = [['false alarms an hour (95 %)',
-             *(rate(Quiet.of(of_fault(rows, NORMAL))) for rows in by_learning.values()), NONE]]
+    body = [[FALSE_ALARMS,
+             *(rate(Quiet(of_fault(rows, NORMAL))) for rows in by_learning.values()), NONE]]
     for kind in KINDS:
         found = [_of_kind(rows, kind) for rows in by_learning.values()]
         if found[0].records:
-            body.append([TITLES[kind], *(
-                f'{percent(each.share())} ({interval(each)}), {seconds(each.median_s)}'
-                for each in found), f'{part(found[-1].first)} / {part(found[-1].at_end)}'])
-    named = [Found.of(of_fault(rows, '')).bystanders for rows in by_learning.values()]
+            body.append([TITLES[kind], *(f'{with_interval(each)}, {seconds(each.median_s)}'
+                                         for each in found), _right_node(found[-1])])
+    named = [Found(of_fault(rows, '')).bystanders for rows in by_learning.values()]
     return [*table(['what', *(f'{started(learning)}: alarm (95 %), median'
-                              for learning in by_learning), 'the right node first / at the end'],
-                   body), '', 'Alarms that name a node which has nothing to do with the fault: '
+                              for learning in by_learning), _RIGHT_NODE], body), '',
+            'Alarms that name a node which has nothing to do with the fault: '
             + '; '.join(f'{some} of {all_}' for some, all_ in named) + '.']
+
+
+def _right_node(found: Found) -> str:
+    return f'{part(found.first)} / {part(found.at_end)}'
 
 
 def _of_families(families: Sequence[str], by_learning: Dict[str, List[Row]]) -> List[str]:
     first, last = next(iter(by_learning)), list(by_learning)[-1]
     kinds = [kind for kind in KINDS if kind not in (CRASH, RESTART, FLOOD, *_SUSPICIONS)]
-    head = ['family', *(f'false alarms/h, {started(each)}' for each in by_learning),
-            'alarm stands', 'WARN/h', f'crashes, within {_WITHIN} s',
-            *(f'{TITLES[kind]}, {started(last)}' if kind == LATE else TITLES[kind]
-              for kind in kinds), 'alarms after a restart', 'watched', 'false alarms from']
     body = []
     for family in [*families, ALL]:
         rows = {learning: [row for row in of_learning if family in (ALL, _FAMILY(row))]
                 for learning, of_learning in by_learning.items()}
-        quiet = Quiet.of(of_fault(rows[first], NORMAL))
-        body.append([
-            family, *(rate(Quiet.of(of_fault(each, NORMAL))) for each in rows.values()),
-            percent(quiet.standing), number(quiet.warnings_per_hour),
-            _crashes(rows[first]), *(_found(rows[last if kind == LATE else first], kind)
-                                     for kind in kinds),
-            of_all(Found.of(of_fault(rows[first], RESTART)).after, 'after'), _watched(quiet),
-            '; '.join(f'{text} {count}' for text, count in quiet.evidence[:_MOST_SOURCES])
-            or NONE])
+        quiet = Quiet(of_fault(rows[first], NORMAL))
+        body.append({
+            'family': family, **{f'false alarms/h, {started(learning)}':
+                                 rate(Quiet(of_fault(of_learning, NORMAL)))
+                                 for learning, of_learning in rows.items()},
+            'alarm stands': percent(quiet.standing), 'WARN/h': number(quiet.warnings_per_hour),
+            **{title + (f', {started(last)}' if title == TITLES[LATE] else ''): cell
+               for title, cell in _faults(rows[first], kinds, rows[last]).items()},
+            'watched': _watched(quiet), 'false alarms from': '; '.join(
+                f'{text} {count}' for text, count in quiet.evidence[:2]) or NONE})
     return [f'Of what was learned from {started(first)}, if a column says nothing else. *First*, '
             '*end*: the right node is blamed when the alarm is raised, and when the fault ends; '
-            'or nobody, where no node is guilty.', '', *table(head, body)]
+            'or nobody, where no node is guilty.', '', *_table_of(body)]
 
 
 def _pooled(rows: Sequence[Row]) -> List[str]:
@@ -206,43 +192,44 @@ def _pooled(rows: Sequence[Row]) -> List[str]:
     for (learning, system, budget), of_subject in grouped(
             rows, lambda row: (row.subject.learning, row.subject.system, row.subject.budget)
             ).items():
-        quiet = Quiet.of(of_fault(of_subject, NORMAL))
-        body.append([
-            system, started(learning), NONE if budget is None else f'{budget:g}', rate(quiet),
-            number(quiet.expected), percent(quiet.kept) if quiet.expected >= 0.0 else NONE,
-            number(quiet.warnings_per_hour), _watched(quiet), _crashes(of_subject),
-            *(_found(of_subject, kind) for kind in KINDS if kind not in (CRASH, RESTART)),
-            of_all(Found.of(of_fault(of_subject, RESTART)).after, 'after')])
-    return table(['system', 'learned from', 'budget', 'false alarms/h', 'promised',
-                  'robots within the promise', 'WARN/h', 'watched',
-                  f'crashes, within {_WITHIN} s',
-                  *(TITLES[kind] for kind in KINDS if kind not in (CRASH, RESTART)),
-                  'alarms after a restart'], body)
+        quiet = Quiet(of_fault(of_subject, NORMAL))
+        body.append({
+            'system': system, 'learned from': started(learning),
+            'budget': NONE if budget is None else f'{budget:g}', 'false alarms/h': rate(quiet),
+            'promised': number(quiet.expected), 'robots within the promise':
+            percent(quiet.kept) if quiet.expected >= 0.0 else NONE,
+            'WARN/h': number(quiet.warnings_per_hour), 'watched': _watched(quiet),
+            **_faults(of_subject, [kind for kind in KINDS if kind not in (CRASH, RESTART)],
+                      of_subject)})
+    return _table_of(body)
+
+
+def _table_of(rows: Sequence[Mapping[str, str]]) -> List[str]:
+    """Return a table of rows, of which there is at least one, by column."""
+    return table(list(rows[0]), [list(row.values()) for row in rows])
 
 
 def _of_kind(rows: Sequence[Row], kind: str) -> Found:
     """Return how a kind was found; of what is no alarm, by its suspicion."""
-    found = Found.of(of_fault(rows, kind))
-    return replace(found, latencies_s=found.noticed_s) if kind in _SUSPICIONS else found
+    found = of_fault(rows, kind)
+    return Found([replace(row, latency_s=row.noticed_s) for row in found]
+                 if kind in _SUSPICIONS else found)
 
 
-def _crashes(rows: Sequence[Row]) -> str:
-    found = Found.of(of_fault(rows, CRASH))
-    told = ' / '.join(f'{100.0 * found.share(each):.0f}' for each in WITHIN_S)
-    return f'{told} %{_blame(found)}' if found.records else NONE
+def _faults(rows: Sequence[Row], kinds: Sequence[str], late: Sequence[Row]) -> Dict[str, str]:
+    """Return how faults were found, by column; late: the rows to say LATE of."""
+    def told(found: Found, shares: Sequence[float], time: str) -> str:
+        blame = (f', first {part(found.first)}, end {part(found.at_end)}' if found.first[1]
+                 else '')
+        return (f'{" / ".join(f"{100.0 * each:.0f}" for each in shares)} %{time}{blame}'
+                if found.records else NONE)
 
-
-def _found(rows: Sequence[Row], kind: str) -> str:
-    found = _of_kind(rows, kind)
-    if not found.records:
-        return NONE
-    return f'{100.0 * found.share():.0f} %, {seconds(found.median_s)}{_blame(found)}'
-
-
-def _blame(found: Found) -> str:
-    if not found.first[1]:
-        return ''
-    return f', first {part(found.first)}, end {part(found.at_end)}'
+    crashes = Found(of_fault(rows, CRASH))
+    others = {TITLES[kind]: _of_kind(late if kind == LATE else rows, kind) for kind in kinds}
+    return {_CRASHES: told(crashes, [crashes.share(each) for each in WITHIN_S], ''),
+            **{title: told(each, [each.share()], f', {seconds(each.median_s)}')
+               for title, each in others.items()},
+            'alarms after a restart': of_all(Found(of_fault(rows, RESTART)).after, 'after')}
 
 
 def _watched(quiet: Quiet) -> str:
@@ -262,26 +249,23 @@ def recordings(rows: Sequence[Row]) -> Section:
 def _table(rows: Sequence[Row]) -> List[str]:
     return table(['recording', 'system', 'watched', 'outage', 'latency', 'at its end',
                   'false alarms', 'alarm stood in normal operation'],
-                 [_cells(of_subject) for of_subject in
-                  grouped(rows, lambda row: row.subject).values()])
+                 [[subject.robot, subject.system, *_cells(of_subject)] for subject, of_subject
+                  in grouped(rows, lambda row: row.subject).items()])
 
 
 def _cells(rows: Sequence[Row]) -> List[str]:
     normal = next(row for row in rows if row.fault == NORMAL)
     outage = next((row for row in rows if row.fault == OUTAGE), None)
-    subject = normal.subject
     if normal.refused:
-        return [subject.robot, subject.system, NONE, normal.refused, *[NONE] * 4]
-    told, latency, at_end = NONE, NONE, NONE
+        return [NONE, normal.refused, *[NONE] * 4]
+    told = [NONE] * 3
     if outage is not None:
-        told = 'found' if outage.stood_before or outage.latency_s is not None else 'missed'
-        told += ', stood before' if outage.stood_before else ''
-        latency = NONE if outage.latency_s is None else seconds(outage.latency_s)
-        at_end = ', '.join(each for each in (outage.level, outage.kind, outage.culprit)
-                           if each) or NONE
-    return [subject.robot, subject.system, str(normal.watched), told, latency, at_end,
-            str(normal.alarms), f'{normal.standing_hours * HOUR_S:.1f} of '
-            f'{normal.hours * HOUR_S:.1f} s']
+        found = 'found' if outage.stood_before or outage.latency_s is not None else 'missed'
+        told = [found + (', stood before' if outage.stood_before else ''),
+                NONE if outage.latency_s is None else seconds(outage.latency_s),
+                ', '.join(filter(None, (outage.level, outage.kind, outage.culprit))) or NONE]
+    return [str(normal.watched), *told, str(normal.alarms),
+            f'{normal.standing_hours * HOUR_S:.1f} of {normal.hours * HOUR_S:.1f} s']
 
 
 def _told(case: Case) -> str:

@@ -26,32 +26,26 @@ from self_awareness_follow_me.scenario import Scenario, load_scenario
 from self_awareness_follow_me.simulation import START_S, InducedFault, simulate
 
 RECORD_S = 100.0  # length of the records of training and of faults [s], as in the paper
+NORMAL_TEST_S = 600.0  # of the record of normal operation that false alarms are counted on
 
-NORMAL_TEST_S = 600.0
-"""Length of the record of normal operation that false alarms are counted on [s]."""
-
+# What the records to learn from are called; those of faults are called as the faults.
 TRAINING_NAMES = ('training 1', 'training 2')
 CALIBRATION_NAME = 'calibration'
-"""What the records to learn from are called; those of faults are called as the faults."""
 
+# Faults that neither silence nor timing tells, and the time in which they are to be found [s].
 WITHIN_S: Dict[str, float] = {
     'stale:slam': 1.4,  # two periods, and a second
-    'lossy:motors': 30.0,
-    'lossy:camera': 30.0,
-    'empty:player': 5.0,
-    'freeze:camera': 5.0,
+    'lossy:motors': 30.0, 'lossy:camera': 30.0, 'empty:player': 5.0, 'freeze:camera': 5.0,
     'unsubscribed:navigation': 65.0,  # it is a finding after a minute
 }
-"""Faults that neither silence nor timing tells, and the time in which they are to be found [s]."""
 
+# What is learned from: as in the paper, but for the calibration, which has 100 s there.
 LEARNING = Learning(len(TRAINING_NAMES), RECORD_S, 1, 600.0)
-"""What is learned from: as in the paper, but for the calibration, which has 100 s there."""
 
 # For how long records with a fault go on, at least, after its onset [s].
 _GOES_ON_S = {'lossy:camera': 150.0,  # of 7.5 images a second, 0.075 are lost
               'unsubscribed:navigation': 70.0}
 
-_HOUR_S = 3600.0
 _HOURS = 1 << 15  # that a record may begin at
 _ONSET_S = 50.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
@@ -60,8 +54,7 @@ _IRREGULAR = ('speech_recognition', 'dialog', 'anchoring')  # they send when som
 
 def default_faults(scenario: Scenario) -> List[str]:
     """Return the faults that are evaluated: the paper's, further ones, and crashes in turn."""
-    crashes = [f'crash:{spec.name}' for spec in scenario.components
-               if spec.name not in _IRREGULAR]
+    crashes = [f'crash:{each.name}' for each in scenario.components if each.name not in _IRREGULAR]
     return ['cc1', 'cc2', 'rs', 'ac', 'lat', 'silence', 'extra', 'half:player',
             'double:gaze_control', 'order', 'unknown', *WITHIN_S, *crashes]
 
@@ -136,7 +129,7 @@ def _subscriptions(scenario: Scenario, start_s: float, fault: Optional[InducedFa
 
 
 def _start_s(seed: int) -> float:
-    return START_S + _HOUR_S * (seed % _HOURS)
+    return START_S + 3600.0 * (seed % _HOURS)
 
 
 def _derived_seed(seed: int, name: str) -> int:

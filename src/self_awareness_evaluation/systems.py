@@ -30,12 +30,8 @@ from self_awareness_evaluation.records import (ALARM, FALSE_POSITIVE_RATE, Judge
                                                WindowedEvents, common_threshold, persistent,
                                                settling, stamps_by)
 
-SPAN = 5 * SECOND_NS
-"""Length of the time over which messages are counted [ns]: 5 updates, once a second."""
-
-LONGER = 1.25
-"""Times the longest gap ever seen, from where on an event type is silent for too long."""
-
+SPAN = 5 * SECOND_NS  # over which messages are counted [ns]: 5 updates, once a second
+LONGER = 1.25  # times the longest gap ever seen, an event type is silent for too long
 OUTSIDE = 0.25  # share by which the events of the last 5 s may be fewer, or more, than ever seen
 _PERIODIC = 0.2  # largest coefficient of variation of the gaps of a periodic topic
 _FEWEST_GAPS = 10
@@ -56,7 +52,6 @@ class Paper:
     expected_per_hour = None
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Count the delays."""
         learner = Learner(evidence=False, paper=True)
         for recording in recordings:
             learner.count(recording.events)
@@ -74,7 +69,6 @@ class Paper:
             self.threshold = common_threshold(scores, rate)
 
     def judge(self, recording: WindowedEvents) -> Judged:
-        """Judge a recording."""
         return judged_of(self.verdicts(recording), recording.encoded(self._types).event_types)
 
     def verdicts(self, recording: WindowedEvents) -> Verdicts:
@@ -95,7 +89,6 @@ class Evidence:
     budget: float = limits.BUDGET  # false alarms an hour that the limits allow
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Count the delays and gaps."""
         learner = Learner(self.tuning, self.graph)
         for recording in recordings:
             learner.add(recording.events)
@@ -107,28 +100,23 @@ class Evidence:
         self._model = EvidenceModel(self._trained)
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Find the limits."""
         self._trained.calibration, = limits.find(
             self._trained, DetectorParameters().settle_time, [self.budget],
             [recording.encoded(self._trained.event_types).events for recording in recordings])
 
     def judge(self, recording: WindowedEvents) -> Judged:
-        """Judge a recording."""
+        trained = self._trained
         return judged_of(self.verdicts(recording),
-                         recording.encoded(self._trained.event_types).event_types,
-                         self._trained.graph)
+                         recording.encoded(trained.event_types).event_types, trained.graph)
 
     @property
     def expected_per_hour(self) -> Optional[float]:
-        """See System."""
         calibration = self._trained.calibration
-        if calibration is None or math.isnan(calibration.false_alarms_per_hour):
-            return None
-        return calibration.false_alarms_per_hour
+        expected = math.nan if calibration is None else calibration.false_alarms_per_hour
+        return None if math.isnan(expected) else expected
 
     @property
     def watched(self) -> Set[str]:
-        """See System."""
         return {each.component for each in self.coverage() if each.is_watched}
 
     def coverage(self) -> List[Coverage]:
@@ -182,11 +170,8 @@ def incidents_of(found: Iterable[Alarm], graph: AbstractSet[Tuple[str, str, str]
 
 class Peer:
     """A system whose windows score the largest deviation from bounds, negated; it blames whose is
-    the largest. Persistence is that of all other systems.
-
-    Args:
-        key: returns what has bounds: the topic, or the event type itself.
-    """
+    the largest. Persistence is that of all other systems. What has bounds, the topic or the event
+    type itself, is what `key` returns."""
 
     threshold = 0.0
     expected_per_hour = None
@@ -194,8 +179,7 @@ class Peer:
     def __init__(self, key: Callable[[EventType], Hashable]) -> None:
         self._key = key
         self.bounds: Dict[Hashable, Any] = {}  # by topic or event type; one without is not watched
-        self._sources: Dict[Hashable, Dict[str, None]] = {}
-        """By topic or event type, in the order of their coming."""
+        self._sources: Dict[Hashable, Dict[str, None]] = {}  # likewise, as they came
         self._last: Optional[Tuple[WindowedEvents, np.ndarray]] = None
 
     @staticmethod
@@ -205,11 +189,9 @@ class Peer:
 
     @property
     def watched(self) -> Set[str]:
-        """The sources of all that has bounds."""
         return {source for key in self.bounds for source in self._sources[key]}
 
     def judge(self, recording: WindowedEvents) -> Judged:
-        """Judge a recording."""
         start, unsettled = recording.starts(), settling(recording)
         alarms = []
         for alarm in persistent(start, self.abnormal(recording) & ~unsettled):
@@ -219,11 +201,9 @@ class Peer:
         return Judged(start, unsettled, alarms)
 
     def abnormal(self, recording: WindowedEvents) -> np.ndarray:
-        """Return which windows are abnormal."""
         return self.scores(recording) < self.threshold
 
     def scores(self, recording: WindowedEvents) -> np.ndarray:
-        """Return the scores of the windows."""
         deviations = self._deviations(recording)
         return -deviations.max(axis=0) if len(deviations) else np.zeros(len(recording.starts()))
 
@@ -256,10 +236,8 @@ class FrequencyMonitor(Peer):
 
     They are wider by one message, which may fall to either side of the end of SPAN by its phase
     alone: without that, the slowest topics decide on the threshold, and the fast ones are found a
-    second later. Periodic topics of any frequency are watched, if the fewest are 2 or more.
-
-    Args:
-        rate: share of the normal windows of the calibration that are below the threshold.
+    second later. Periodic topics of any frequency are watched, if the fewest are 2 or more. The
+    share `rate` of the normal windows of the calibration are below the threshold.
     """
 
     def __init__(self, rate: float = FALSE_POSITIVE_RATE) -> None:
@@ -268,7 +246,6 @@ class FrequencyMonitor(Peer):
 
     @staticmethod
     def deviation(bounds: Tuple[int, int], stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
-        """See Peer."""
         count, (fewest, most) = messages_in_span(stamps, ends), bounds
         return np.maximum((fewest - count) / fewest, (count - most) / most).clip(0.0)
 
@@ -291,35 +268,28 @@ class FrequencyMonitor(Peer):
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose the threshold by the common rule."""
         self.threshold = common_threshold(
-            [self.scores(recording)[~settling(recording)] for recording in recordings],
-            self._rate)
+            [self.scores(each)[~settling(each)] for each in recordings], self._rate)
 
 
 class GapBounds(NamedTuple):
-    """What was seen of an event type: its longest gap [ns], fewest and most events in SPAN.
-
-    Where it was never heard for as long as SPAN, the fewest are more than the most.
-    """
+    """What was seen of an event type: its longest gap [ns], fewest and most events in SPAN. Where
+    it was never heard for as long as SPAN, the fewest are more than the most."""
 
     longest: float
     fewest: float
     most: float
 
     def deviation(self, ages: np.ndarray, counts: np.ndarray) -> np.ndarray:
-        """Return by which share windows are beyond the bounds, 0 within them.
-
-        Args:
-            ages: times since the last event at the end of the windows [ns]; NaN: there was none.
-            counts: events of the last SPAN; NaN: the type has not been heard for so long.
-        """
+        """Return by which share windows are beyond the bounds, 0 within them; by the times since
+        the last event [ns], NaN without one, and the events of the last SPAN, NaN where the type
+        has not been heard for so long."""
         silent = np.fmax(ages / (LONGER * self.longest) - 1.0, 0.0)
         if self.fewest > self.most:
             return silent
         fewest = min((1.0 - OUTSIDE) * self.fewest, self.fewest - 1.0)
         most = max((1.0 + OUTSIDE) * self.most, self.most + 1.0)
-        few = (fewest - counts) / max(fewest, 1.0)
-        many = (counts - most) / most
-        return np.fmax(silent, np.fmax(few, many))
+        return np.fmax(silent, np.fmax((fewest - counts) / max(fewest, 1.0),
+                                       (counts - most) / most))
 
 
 class GapMonitor(Peer):
@@ -331,7 +301,6 @@ class GapMonitor(Peer):
 
     @staticmethod
     def deviation(bounds: GapBounds, stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
-        """See Peer."""
         if not len(stamps):
             return np.zeros(len(ends))
         number = np.searchsorted(stamps, ends)  # of those before
@@ -348,11 +317,10 @@ class GapMonitor(Peer):
                     continue
                 counts = _counts(stamps, ends[ends <= recording.end])
                 counts = counts[np.isfinite(counts)]
-                known = self.bounds.get(event_type, GapBounds(0.0, np.inf, 0.0))
-                self.bounds[event_type] = GapBounds(
-                    max(known.longest, float(np.diff(stamps).max())),
-                    min(known.fewest, counts.min(initial=np.inf)),
-                    max(known.most, counts.max(initial=0.0)))
+                longest, fewest, most = self.bounds.get(event_type, (0.0, np.inf, 0.0))
+                self.bounds[event_type] = GapBounds(max(longest, float(np.diff(stamps).max())),
+                                                    counts.min(initial=fewest),
+                                                    counts.max(initial=most))
 
     calibrate = train
 

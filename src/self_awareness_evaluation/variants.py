@@ -12,19 +12,13 @@ from self_awareness.commands import cli
 from self_awareness_evaluation.records import Learning, System
 from self_awareness_evaluation.systems import Evidence, FrequencyMonitor, GapMonitor, Paper
 
-EVIDENCE = ('evidence', 'evidence_no_graph')
-"""The evidence detector, with the graph of the robot and without."""
-
+EVIDENCE = ('evidence', 'evidence_no_graph')  # with the graph of the robot, and without
 _OTHERS: Dict[str, Callable[[], System]] = {
     'paper': Paper, 'gaps': GapMonitor, 'frequency_learned': FrequencyMonitor}
 
 SYSTEMS = (*EVIDENCE, *_OTHERS)  # the names of all systems
-
-_HALF, _DOUBLE = 0.5, 2.0
-
-WITHOUT, BETWEEN = 'without ', '; '
-
-OFF = 'off'  # as a value: the one that switches the rule off
+_WITHOUT, _BETWEEN = 'without ', '; '
+_OFF = 'off'  # as a value: the one that switches the rule off
 
 
 def add_changes(parser: argparse.ArgumentParser) -> None:
@@ -34,12 +28,12 @@ def add_changes(parser: argparse.ArgumentParser) -> None:
                         f'channels: {", ".join(Tuning.channels())}')
     parser.add_argument('--set', type=_change, nargs='+', action='extend', default=[],
                         metavar='NAME=VALUE', help='change these numbers of the evidence method, '
-                        f'as `info --tuning` lists them; {OFF} as a value switches a rule off')
+                        f'as `info --tuning` lists them; {_OFF} as a value switches a rule off')
 
 
 def change_of(arguments: argparse.Namespace) -> str:
     """Return what the arguments of add_changes() change."""
-    return BETWEEN.join([*arguments.set, *(WITHOUT + channel for channel in arguments.without)])
+    return _BETWEEN.join([*arguments.set, *(_WITHOUT + channel for channel in arguments.without)])
 
 
 def number_set(name: str, value: float) -> str:
@@ -48,15 +42,12 @@ def number_set(name: str, value: float) -> str:
 
 
 def tuning_of(change: str) -> Tuning:
-    """Return the method with a change.
-
-    Args:
-        change: `NAME=VALUE` and `without CHANNEL`, several with BETWEEN between; empty: none.
-    """
+    """Return the method with a change: `NAME=VALUE` or `without CHANNEL`, several with `; `
+    between; empty: none."""
     tuning = Tuning()
-    for each in change.split(BETWEEN) if change else []:
-        if each.startswith(WITHOUT):
-            tuning.leave_out(each[len(WITHOUT):])
+    for each in change.split(_BETWEEN) if change else []:
+        if each.startswith(_WITHOUT):
+            tuning.leave_out(each[len(_WITHOUT):])
         else:
             name, _, value = each.partition('=')
             tuning.set(name, float(value))
@@ -70,7 +61,7 @@ def _change(text: str) -> str:
         raise ValueError(f'expected NAME=VALUE, not {text}')
     tuning = Tuning()
     tuning.get(name)  # says so if there is none of this name
-    if value == OFF:
+    if value == _OFF:
         off = next(number.off for number in Tuning.numbers() if number.name == name)
         if off is None:
             raise ValueError(f'{name}: no value of it switches a rule off')
@@ -117,17 +108,14 @@ def side_by_side(systems: Sequence[str], learnings: Sequence[Optional[Learning]]
 def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Sequence[str]] = None
                ) -> List[Variant]:
     """Return the method as it is, and with one thing changed after the other: channels left out,
-    numbers switched off, halved and doubled; None: all of them.
-
-    Raises:
-        ValueError: there is no such channel or number.
-    """
+    numbers switched off, halved and doubled; None: all of them. Raise ValueError if there is no
+    such channel or number."""
     for name in channels or ():
         Tuning().leave_out(name)
     for name in numbers or ():
         Tuning().get(name)
     known = [number for number in Tuning.numbers() if numbers is None or number.name in numbers]
-    changes = [f'{WITHOUT}{name}' for name in
+    changes = [f'{_WITHOUT}{name}' for name in
                (Tuning.channels() if channels is None else channels)]
     changes += [number_set(number.name, number.off) for number in known
                 if number.off is not None and number.off != number.default]
@@ -138,13 +126,11 @@ def one_by_one(channels: Optional[Sequence[str]] = None, numbers: Optional[Seque
 
 
 def _values(number: TuningNumber) -> Iterator[float]:
-    """Yield half of a number and twice that, within its range, unless that is known already.
-
-    A pure number that is whole stays whole: it counts something.
-    """
+    """Yield half of a number and twice that, within its range, unless that is known already. A
+    pure number that is whole stays whole: it counts something."""
     default = float(number.default)
     seen = {default, number.off}
-    for factor in (_HALF, _DOUBLE):
+    for factor in (0.5, 2.0):
         value = min(max(factor * default, number.least), number.most)
         if not number.unit and default.is_integer():
             value = float(math.floor(value + 0.5))

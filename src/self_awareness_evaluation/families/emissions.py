@@ -25,8 +25,8 @@ _JITTER = 0.2  # standard deviation of the logarithm of an age
 _MOST_SPREAD = 0.5  # the same of sizes that vary
 _HELD_S = (0.2, 60.0)  # mean time with the same content, of those that repeat themselves
 
+# Returns when the messages of an output, by its index, reach the component [s].
 Heard = Callable[[int], np.ndarray]
-"""Returns when the messages of an output, by its index, reach the component [s]."""
 
 
 class Emission:
@@ -45,10 +45,8 @@ class Timer(Emission):
     """Sends by a timer, whose phase is another one with every start."""
 
     period_s: float = 1.0  # from tick to tick [s]
-    # Standard deviation of the time by which messages come after the tick [s].
-    jitter_s: float = 0.0003
-    # Standard deviation of the gaps over the period; they add up. 0: exact ticks.
-    variation: float = 0.0
+    jitter_s: float = 0.0003  # standard deviation of the time from the tick to the message
+    variation: float = 0.0  # that of the gaps over the period; they add up. 0: exact ticks
     ppm: float = 0.0  # by how many millionths its clock is slow
     wander: float = 0.0  # the largest share by which the rate wanders within hours
     loop: bool = False  # what a stall of the host takes is added to the time of all later ticks
@@ -109,8 +107,7 @@ class TwoRates(Emission):
 class Answer(Emission):
     """Sends some time after a message that the component hears."""
 
-    # Index of the output that it answers to, one before its own.
-    trigger: int = field()  # without the default of Emission
+    trigger: int = field()  # without the default of Emission; one before its own
     delay_s: float  # median time that the answer takes [s]
     spread: float = 0.1  # standard deviation of the logarithm of that time
     every: int = 1  # only every so many messages are answered
@@ -135,8 +132,7 @@ class Answer(Emission):
 class Feedback(Emission):
     """Sends while the component works on an answer, as an action server does."""
 
-    # Index of the output with the answers, one before its own and of the same component.
-    result: int
+    result: int  # index of the output with the answers, one before its own, of the same component
     period_s: float  # from message to message [s]
 
     def times(self, scene: Scene, index: int, heard: Heard) -> np.ndarray:
@@ -197,12 +193,7 @@ def attributes_of(datatype: str, scene: Scene, index: int, times: np.ndarray,
 
     Stamps are a little older than the messages, numbers count them, and sizes and contents are
     those of their types: some have one size, some vary, and some say the same again and again.
-
-    Args:
-        datatype, index: of the output.
-        scene: decides what is random.
-        times, numbers: when the messages come [s], and how many were sent before.
-        on_the_way_s: how long they took [s].
+    The messages of the output come at `times` [s], `numbers` were sent before.
     """
     of_robot = _of_robot(datatype, index)
     rng = scene.of_recording(f'attributes {index}')

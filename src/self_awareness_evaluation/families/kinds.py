@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, Dict, FrozenSet, List, Optional, Set, Tuple
+from typing import Callable, Dict, FrozenSet, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -12,17 +12,15 @@ from self_awareness_evaluation.families.robot import LOG, WARNING, Output, Robot
 from self_awareness_evaluation.families.scene import CRASH, NOTHING, Activity, Conditions, Fault
 
 RATES_HZ = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 30.0, 50.0, 100.0)  # usual rates
-
 _CHAINS = 7
 FASTEST_CHAIN_HZ = 30.0
 _SHORTEST_ANSWER_S, _LONGEST_ANSWER_S = 0.003, 0.04
 MOST_OF_PERIOD = 0.4  # an answer takes no longer, so that its component keeps up
 _COPY_S = 0.0005
-
 _TRANSFORMS = 'tf2_msgs/TFMessage'
 _DIAGNOSTICS = 'diagnostic_msgs/DiagnosticArray'
-_TEMPERATURE = 'sensor_msgs/Temperature'
-_RESULT = 'move_base_msgs/MoveBaseActionResult[status.status='
+_ACTION = 'move_base_msgs/MoveBaseAction'
+_RESULT = f'{_ACTION}Result[status.status='
 _FAILS = 1.0 / 12.0  # of the goals, in normal operation
 _HOLE_S = 6.0
 _HEAD_OR_TAIL_S = (6.0, 20.0)
@@ -34,9 +32,9 @@ class Draft:
     def __init__(self, seed: int) -> None:
         self.seed = seed
         self.rng = np.random.default_rng(seed)
+        # What timers that are added from now on are like: clocks differ by up to its `ppm`, and
+        # half of them loop if it does.
         self.timing = Timer()
-        """What timers that are added from now on are like: clocks differ by up to its `ppm`, and
-        half of them loop if it does."""
         self.namespace = ''  # put before all names that are added from now on, like `/robot1`
         self.conditions = Conditions()
         self.outputs: List[Output] = []
@@ -46,7 +44,6 @@ class Draft:
         self._clocks: Dict[str, float] = {}
 
     def robot(self) -> Robot:
-        """Return the robot."""
         return Robot(self.seed, tuple(self.outputs), self.conditions, self.activities,
                      frozenset(self.subscriptions), self.far)
 
@@ -87,9 +84,18 @@ class Draft:
             begin = self.add_answer(f'{name}_{link + 1}', begin, MOST_OF_PERIOD / rate_hz)
         return begin
 
+    def add_drivers(self, number: int, rates_hz: Sequence[float]) -> None:
+        """Add components with a timer of one of some rates each."""
+        for each in range(number):
+            self.add_timer(f'driver{each}', float(self.rng.choice(rates_hz)))
+
+    @property
+    def sources(self) -> List[str]:
+        return sorted({output.source for output in self.outputs})
+
     def listen(self, number: int) -> None:
         """Let every component with a timer subscribe to some others that it does not answer to."""
-        sources = sorted({output.source for output in self.outputs})
+        sources = self.sources
         for output in self.outputs:
             if isinstance(output.emission, Timer):
                 for publisher in self.rng.choice(sources, int(self.rng.integers(0, number + 1))):
@@ -112,10 +118,9 @@ def add_task(draft: Draft, name: str, trigger: int) -> None:
     """Add a component that answers within 0.1 to 4 s; half of them tell how they get on."""
     delay = float(np.exp(draft.rng.uniform(np.log(0.1), np.log(2.5))))
     spread = draft.rng.uniform(0.05, 0.15)
-    result = draft.add(name, 'result', 'move_base_msgs/MoveBaseActionResult',
-                       Answer(trigger, delay, spread))
+    result = draft.add(name, 'result', f'{_ACTION}Result', Answer(trigger, delay, spread))
     if draft.rng.uniform() < 0.5:
-        draft.add(name, 'feedback', 'move_base_msgs/MoveBaseActionFeedback',
+        draft.add(name, 'feedback', f'{_ACTION}Feedback',
                   Feedback(result, delay / draft.rng.uniform(2.0, 6.0)))
 
 
@@ -158,8 +163,7 @@ def _driving_docked(draft: Draft) -> None:
 def _rate_modes(draft: Draft) -> None:
     rng = draft.rng
     draft.activities['driving'] = Activity(60.0, 60.0)
-    for number in range(3):
-        draft.add_timer(f'driver{number}', float(rng.choice(RATES_HZ)))
+    draft.add_drivers(3, RATES_HZ)
     for number in range(int(rng.integers(10, 16))):
         fast = float(rng.choice((20.0, 50.0)))
         index = draft.add(f'motion{number}', 'state', 'nav_msgs/Odometry', TwoRates(
@@ -176,8 +180,7 @@ def _small(draft: Draft) -> None:
 
 def _servers(draft: Draft) -> None:
     rng = draft.rng
-    for number in range(2):
-        draft.add_timer(f'driver{number}', float(rng.choice((1.0, 10.0, 50.0))))
+    draft.add_drivers(2, (1.0, 10.0, 50.0))
     for server in range(2):
         for client in range(int(rng.integers(4, 7))):
             name = f'client{server}_{client}'
@@ -188,8 +191,7 @@ def _servers(draft: Draft) -> None:
 
 def _wireless(draft: Draft) -> None:
     add_timers_and_chains(draft)
-    sources = sorted({output.source for output in draft.outputs})
-    far = draft.rng.choice(sources, len(sources) // 3, replace=False).tolist()
+    far = draft.rng.choice(draft.sources, len(draft.sources) // 3, replace=False).tolist()
     draft.conditions, draft.far = Conditions(heavy=0.01), frozenset(far)
 
 
@@ -199,28 +201,25 @@ def _events_only(draft: Draft) -> None:
     for number in range(2):
         draft.add(f'watchdog{number}', 'heartbeat', 'std_msgs/Empty',
                   Timer(float(rng.choice((1.0, 2.0, 5.0))), jitter_s=0.01))
-    person = draft.add('speech', 'heard', 'std_msgs/String', Sporadic(rng.uniform(5.0, 15.0),
-                                                                      'session'))
-    button = draft.add('panel', 'pressed', 'std_msgs/Bool', Sporadic(rng.uniform(10.0, 30.0),
-                                                                     'session'))
+    person = draft.add('speech', 'heard', 'std_msgs/String',
+                       Sporadic(rng.uniform(5.0, 15.0), 'session'))
+    button = draft.add('panel', 'pressed', 'std_msgs/Bool',
+                       Sporadic(rng.uniform(10.0, 30.0), 'session'))
     for number in range(9):
         before = [index for index, output in enumerate(draft.outputs)
                   if not isinstance(output.emission, (Timer, Feedback))]
-        trigger = int(rng.choice(before[:2] if number < 3 else before))
-        add_task(draft, f'task{number}', trigger)
+        add_task(draft, f'task{number}', int(rng.choice(before[:2] if number < 3 else before)))
     draft.subscriptions.add((draft.outputs[person].source, draft.outputs[button].source))
 
 
 def _bursty(draft: Draft) -> None:
     rng = draft.rng
-    timers = int(rng.integers(5, 13))
-    rates = rng.choice((2.0, 5.0, 10.0, 20.0, 30.0, 50.0), timers).tolist()
-    for number, rate in enumerate(rates):
+    rates = rng.choice((2.0, 5.0, 10.0, 20.0, 30.0, 50.0), int(rng.integers(5, 13)))
+    for number, rate in enumerate(rates.tolist()):
         index = draft.add_timer(f'driver{number}', rate)
         if rate <= FASTEST_CHAIN_HZ and rng.uniform() < 0.6:
             draft.add_chain(f'filter{number}', index, rate, int(rng.integers(1, 4)))
-    triggers = [index for index, output in enumerate(draft.outputs) if output.topic.startswith(
-        ('/driver', '/filter'))]
+    triggers = range(len(draft.outputs))
     for number in range(int(rng.integers(2, 6))):
         seen = f'seen{number}'
         draft.activities[seen] = Activity(rng.uniform(4.0, 15.0), rng.uniform(0.3, 1.0))
@@ -253,8 +252,7 @@ def _two_robots(draft: Draft) -> None:
 
 def _pausing_chains(draft: Draft) -> None:
     rng = draft.rng
-    for number in range(int(rng.integers(3, 7))):
-        draft.add_timer(f'driver{number}', float(rng.choice((1.0, 5.0, 10.0, 50.0))))
+    draft.add_drivers(int(rng.integers(3, 7)), (1.0, 5.0, 10.0, 50.0))
     anchors = []
     for number in range(3):
         rate = float(rng.choice((5.0, 10.0, 15.0, 20.0)))
@@ -278,8 +276,7 @@ def _pausing_chains(draft: Draft) -> None:
 def _dialogue(draft: Draft) -> None:
     rng = draft.rng
     draft.activities['session'] = Activity(rng.uniform(60.0, 180.0), rng.uniform(60.0, 240.0))
-    for number in range(3):
-        draft.add_timer(f'driver{number}', float(rng.choice((1.0, 2.0, 10.0))))
+    draft.add_drivers(3, (1.0, 2.0, 10.0))
     asked = draft.add('microphone', 'speech', 'std_msgs/String',
                       Sporadic(rng.uniform(5.0, 12.0), 'session'))
     for name in ('recogniser', 'dialogue', 'voice'):
@@ -294,8 +291,7 @@ def _dialogue(draft: Draft) -> None:
 
 def _long_pauses(draft: Draft) -> None:
     rng = draft.rng
-    for number in range(4):
-        draft.add_timer(f'driver{number}', float(rng.choice((1.0, 5.0, 10.0, 50.0))))
+    draft.add_drivers(4, (1.0, 5.0, 10.0, 50.0))
     for number in range(4):
         used = f'used{number}'
         draft.activities[used] = Activity(rng.uniform(3.0, 20.0), rng.uniform(20.0, 120.0))
@@ -307,8 +303,8 @@ def _long_pauses(draft: Draft) -> None:
 
 def _of_one_make(draft: Draft, number: int) -> None:
     add_timers_and_chains(draft)
-    own = np.random.default_rng((draft.seed, number))
-    draft.add(f'own{number}', 'data', _TEMPERATURE, Timer(1.0 / float(own.choice(RATES_HZ))))
+    rate = float(np.random.default_rng((draft.seed, number)).choice(RATES_HZ))
+    draft.add(f'own{number}', 'data', 'sensor_msgs/Temperature', Timer(1.0 / rate))
 
 
 def _everyday(draft: Draft) -> None:
@@ -359,9 +355,9 @@ def _hole(robot: Robot, number: int, seconds: float) -> Fault:
 
 def _head_or_tail(robot: Robot, number: int, seconds: float) -> Fault:
     length_s = float(np.random.default_rng((robot.seed, number)).uniform(*_HEAD_OR_TAIL_S))
-    source = robot.regular[number % 2]
-    return (Fault(CRASH, source, 0.0, length_s) if number % 2 == 0
-            else Fault(CRASH, source, seconds - length_s))
+    if number % 2 == 0:
+        return Fault(CRASH, robot.regular[0], 0.0, length_s)
+    return Fault(CRASH, robot.regular[1], seconds - length_s)
 
 
 @dataclass(frozen=True)
@@ -369,7 +365,7 @@ class Family:
     """Robots of a kind."""
 
     told: str  # what they are, in a few words
-    draw: Callable[[Draft], None]  # draws a robot
+    draw: Callable[[Draft], None] = _timers()  # draws a robot
     one_start: bool = False  # the recordings to learn from are all of one start
     watched_start: bool = False  # and so are those that are watched; else each is of another start
     # Returns what is wrong with a recording to learn from, by the robot, the number of the
@@ -392,18 +388,16 @@ class Family:
 _STALLS = Conditions(stalls_an_hour=6.0)
 
 FAMILIES: Dict[str, Family] = {  # all families by name, each with something of its own
-    'timers': Family('exact timers of 0.5 to 100 Hz, seven chains of answers', _timers()),
+    'timers': Family('exact timers of 0.5 to 100 Hz, seven chains of answers'),
     'timers_drift': Family('the same, clocks that differ by up to 50 ppm',
                            _timers(Timer(ppm=50.0))),
-    'timers_one_start': Family('timers, recorded in one start, watched in others', _timers(),
-                               one_start=True),
+    'timers_one_start': Family('timers, recorded in one start, watched in others', one_start=True),
     'stalls': Family('timers, the same start, six stalls of 0.1 to 0.6 s an hour',
                      _timers(conditions=_STALLS), one_start=True, watched_start=True),
     'stalled_loops': Family('the same, half of the timers have a new phase after each stall',
                             _timers(Timer(loop=True), _STALLS), one_start=True,
                             watched_start=True),
-    'wander': Family('timers whose rates wander by 5 % within hours',
-                     _timers(Timer(wander=0.05))),
+    'wander': Family('timers whose rates wander by 5 % within hours', _timers(Timer(wander=0.05))),
     'large': Family('60 nodes, 250 topics, 2000 messages a second, 1 of 1000 lost', _large),
     'driving_docked': Family('2 min driving, 2 min docked, at random', _driving_docked),
     'day_night': Family('work takes up to 3 times as long, by the time of day',
@@ -414,25 +408,22 @@ FAMILIES: Dict[str, Family] = {  # all families by name, each with something of 
     'bursty': Family('15 to 40 components: timers, chains, trackers in bursts, tasks, speech',
                      _bursty),
     'two_robots': Family('two robots in namespaces', _two_robots),
-    'pausing_chains': Family(
-        'chains of legs, tracker, anchor, attention, planner that pause together',
-        _pausing_chains),
+    'pausing_chains': Family('chains of legs, tracker, anchor, attention, planner that pause '
+                             'together', _pausing_chains),
     'dialogue': Family('speech, answers of which a share never comes, minutes of silence',
                        _dialogue),
     'long_pauses': Family('joysticks: seconds of messages, then a minute or two of none',
                           _long_pauses),
     'second_stalls': Family('timers, the same start, six stalls of 0.8 to 1.5 s an hour',
-                            _timers(conditions=Conditions(stalls_an_hour=6.0,
-                                                          stall_s=(0.8, 1.5))),
+                            _timers(conditions=replace(_STALLS, stall_s=(0.8, 1.5))),
                             one_start=True, watched_start=True),
     'hole': Family('timers; in one of the recordings to train on, a driver is silent for 6 s',
-                   _timers(), flaw=_hole),
+                   flaw=_hole),
     'heads_and_tails': Family('timers; of the recordings to learn from, a driver comes late, and '
-                              'another one ends early', _timers(), flaw=_head_or_tail),
+                              'another one ends early', flaw=_head_or_tail),
     'rate_modes': Family('20 or 50 Hz driving, 1 or 2 Hz docked, a minute each', _rate_modes),
     'small': Family('two to four nodes: a driver, and who answers to it', _small),
-    'servers': Family('two servers with four to six clients each that ask now and then',
-                      _servers),
+    'servers': Family('two servers with four to six clients each that ask now and then', _servers),
     'lossy': Family('timers; 1 of 5000 messages is lost, however slowly they come',
                     _timers(conditions=Conditions(lost=2e-4, lost_however_slow=2e-4))),
     'near_timers': Family('a driver; IMUs, a laser, a joystick that pause for up to .1, .5, 10 s',
@@ -440,5 +431,5 @@ FAMILIES: Dict[str, Family] = {  # all families by name, each with something of 
     'everyday': Family('timers and chains; transforms, a latched map, log lines, goals, '
                        'diagnostics', _everyday),
     'one_make': Family('timers; robots of one make with a node of their own each: learned from '
-                       'some, watching another', _timers(), of_make=_of_one_make),
+                       'some, watching another', of_make=_of_one_make),
 }

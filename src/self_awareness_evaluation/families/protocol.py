@@ -18,13 +18,10 @@ from self_awareness_evaluation.records import Robot as RecordedRobot
 
 DEATH = 'death'  # the crash of a component that is silent until something is asked of it
 UNHEARD = 'unheard'  # the same before it has said anything: as if it were not in the recording
-
-SELDOM = 'seldom'
-"""The crash of a component that speaks when something happens, and is asked by nobody."""
-
+SELDOM = 'seldom'  # that of one that speaks when something happens, and is asked by nobody
 NEVER = 'absent'  # what is latched at every start does not come
 
-TITLES: Dict[str, str] = {
+TITLES: Dict[str, str] = {  # what tables call the kinds of faults
     CRASH: 'crashes', HALF_RATE: 'half rate', LATE: 'late answers', DEATH: 'deaths when asked',
     MISSES: 'inputs missed now and then', STARVED: 'starved CPU', SILENT: 'everything silent',
     SELDOM: 'deaths of who speaks seldom', RESTART: 'restarts',
@@ -32,27 +29,22 @@ TITLES: Dict[str, str] = {
     STOP: 'others stop after a crash', SLOWER: '0.7 of the rate', OLD: 'stamps are 3 s older',
     LOSSES: '30 % of the messages lost', OTHER: 'no transform, failed goals, an error (WARN)',
     FLOOD: 'log lines without end', NEVER: 'no latched message (WARN)',
-    FAILS: 'four in five goals fail, not one in twelve',
-    UNHEARD: 'deaths before the first answer'}
-"""What tables call the kinds of faults."""
+    FAILS: 'four in five goals fail, not one in twelve', UNHEARD: 'deaths before the first answer'}
 
 KINDS = tuple(TITLES)  # as they are told apart in the results
 WATCHED_S = 1800.0  # length of a recording of normal operation that is watched [s]
 AFTER_ONSET_S = 60.0  # a recording with a fault lasts for so long after the onset [s]
 AFTER_DEATH_S = 1800.0  # and for so long after a death
-
+# A component that is started again is silent for so long, and then watched for so long [s].
 RESTARTS_IN_S, AFTER_RESTART_S = 10.0, 180.0
-"""A component that is started again is silent for so long, and then watched for so long [s]."""
 
 _ASKED = (DEATH, UNHEARD)
 _ONSET_S = 60.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
 _ONE_IN = 3  # components has old stamps, or loses messages
 _LOSES_S = 20.0
-
 _FOLLOWS_S = 1.0  # so long after the first message is missing, something else follows a crash
 _STOP_TOGETHER = 3
-
 _PAUSES = 3.0  # a recording goes on for so many of its longest pauses after who speaks seldom died
 _PAUSES_FROM_S = 3600.0  # the longest pause is that of so long a time
 _MISSING_S = 60.0  # a death is counted if the recording goes on for this long afterwards
@@ -69,7 +61,6 @@ class _Section:
     is_learned: bool = False
 
 
-_ONE_START = 0
 _TRAINING = _Section(0, 0.0, 600.0, is_learned=True)
 _CALIBRATION = _Section(100, 10_000.0, 600.0, is_learned=True)
 _FAULTS = _Section(10_000, 15_000.0, 200.0)
@@ -93,7 +84,6 @@ class Records:
         self.robot = self._family.robot(seed)
 
     def training(self, learning: Learning) -> List[WindowedEvents]:
-        """Return the recordings to train on."""
         length_s = learning.training_s
         return [self._recorded(_TRAINING, number, length_s,
                                self._family.flaw(self.robot, number, length_s))
@@ -113,16 +103,10 @@ class Records:
 
     def faults(self, kinds: Tuple[str, ...], most: Optional[int] = None,
                after_death_s: float = AFTER_DEATH_S) -> Iterator[FaultRecord]:
-        """Yield a recording of every fault of some kinds, of each component in turn.
-
+        """Yield a recording of every fault of some KINDS, of each component in turn; most: only of
+        so many for each kind, spread evenly; after_death_s: it lasts for so long after a death.
         The onset of a DEATH, or UNHEARD, is when the first message would have come that is
-        missing.
-
-        Args:
-            kinds: of KINDS.
-            most: only of so many components for each kind, spread evenly; None: of all.
-            after_death_s: a recording lasts for so long after a death [s].
-        """
+        missing."""
         robot = self.robot
         regular, answering = robot.regular, robot.answering
         late = [source for source in regular if source in answering]
@@ -149,8 +133,7 @@ class Records:
                                            self._lasts(kind, source, number, after_death_s))
                 number += 1
 
-    def _fault(self, kind: str, source: str, number: int,
-               after_s: float) -> Iterator[FaultRecord]:
+    def _fault(self, kind: str, source: str, number: int, after_s: float) -> Iterator[FaultRecord]:
         """Yield the recording with a fault; none if nothing is missing after a crash for which
         that decides."""
         spread = np.random.default_rng((self.robot.seed, number)).uniform(0.0, _ONSET_SPREAD_S)
@@ -197,8 +180,7 @@ class Records:
         if family.of_make is not None:  # who is watched is none that is learned from
             robot = family.robot(robot.seed, turn if section.is_learned else _WATCHED.first)
         if family.one_start if section.is_learned else family.watched_start:
-            return robot.start(_ONE_START, seconds, fault,
-                               section.from_s + number * section.every_s)
+            return robot.start(0, seconds, fault, section.from_s + number * section.every_s)
         return robot.start(turn, seconds, fault)
 
 

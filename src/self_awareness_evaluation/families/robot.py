@@ -17,19 +17,15 @@ from self_awareness_evaluation.families.scene import (AFTER_CRASH, CRASH, FAILS,
                                                       Scene, in_order)
 from self_awareness_evaluation.records import WindowedEvents
 
-SLOWER_RATE = 0.7
-
-LATE_S = 0.06
-
+# Topic and datatype of log lines that a component writes without end with FLOOD.
 LOG, WARNING = '/rosout', 'rosgraph_msgs/Log[level=4]'
-"""Topic and datatype of log lines that a component writes without end with FLOOD."""
 
+_SLOWER_RATE = 0.7
+_LATE_S = 0.06
 _OLD_S = 3.0  # of stamps
 _LOST = 0.3
 _FLOOD_HZ = 100.0
-
 _FAILS = 0.8  # of the goals, with FAILS
-
 _MISSED_S = 1.0  # what asks in this time is not answered
 _BETWEEN_MISSES_S = 5.0  # mean time until it happens again
 _STARVED_S = 0.15  # mean time that a message waits when the CPU is starved fully
@@ -46,7 +42,7 @@ class Output:
     """A topic that a component publishes."""
 
     source: str  # name of the component
-    topic: str  # that it publishes
+    topic: str
     datatype: str  # of the messages
     emission: Emission  # when it sends; answers are to outputs before it
     other: str = ''  # datatype with another value, that it has with OTHER; empty: it has none
@@ -68,7 +64,6 @@ class Robot:
 
     @property
     def sources(self) -> Set[str]:
-        """The components."""
         return {output.source for output in self.outputs}
 
     @property
@@ -85,13 +80,12 @@ class Robot:
     @property
     def regular(self) -> List[str]:
         """The components that send all the time, or pause for some seconds at the most."""
-        regular = [False] * len(self.outputs)
+        regular: List[bool] = []
         brief = {name for name, each in self.activities.items() if each.off_s <= _SHORT_PAUSE_S}
-        for index, output in enumerate(self.outputs):
-            emission = output.emission
-            regular[index] = (not isinstance(emission, (Feedback, Sporadic, Once))
-                              and emission.activity in {'', *brief}
-                              and (emission.trigger is None or regular[emission.trigger]))
+        for emission in (output.emission for output in self.outputs):
+            regular.append(not isinstance(emission, (Feedback, Sporadic, Once))
+                           and emission.activity in {'', *brief}
+                           and (emission.trigger is None or regular[emission.trigger]))
         return list(dict.fromkeys(output.source for output, is_so in zip(self.outputs, regular)
                                   if is_so))
 
@@ -147,16 +141,10 @@ class Robot:
 
     def start(self, start_seed: int, seconds: float, fault: Fault = NOTHING,
               begin_s: float = 0.0) -> WindowedEvents:
-        """Return a recording of a start. A fault changes nothing before its onset.
-
-        Args:
-            start_seed: decides what is the same in a whole start, such as the phases of timers;
-                from 0 to 20000.
-            seconds, begin_s: length of the recording, and its begin in the start [s].
-
-        Raises:
-            ValueError: the recording is beyond LONGEST_START_S, or nothing happens in it.
-        """
+        """Return a recording of a start, some seconds from `begin_s` on. A fault changes nothing
+        before its onset. Raise ValueError if it is beyond LONGEST_START_S, or nothing happens.
+        The seed of the start, from 0 to 20000, decides what is the same in a whole one, such as
+        the phases of timers."""
         assert fault.source in {'', *self.sources}, fault
         if not 0.0 <= begin_s < begin_s + seconds <= LONGEST_START_S:
             raise ValueError(f'a recording from {begin_s} s on, {seconds} s long: not in a start '
@@ -206,16 +194,17 @@ class Robot:
         if fault.kind == FLOOD and output.datatype == WARNING:
             lines = np.arange(onset, scene.end, 1.0 / _FLOOD_HZ)
             return np.sort(np.concatenate([times, lines]))
-        if fault.kind == MISSES and self._answers_others(output):
+        answers = self._answers_others(output)
+        if fault.kind == MISSES and answers:
             return times[~(hit & _missed(times, scene))]
-        if fault.kind == LATE and self._answers_others(output):
-            return in_order(times + LATE_S * hit)
+        if fault.kind == LATE and answers:
+            return in_order(times + _LATE_S * hit)
         if fault.kind == SLOWER and is_timed:
-            slow = onset + (times[hit] - onset) / SLOWER_RATE
+            slow = onset + (times[hit] - onset) / _SLOWER_RATE
             return np.sort(np.concatenate([times[~hit], slow[slow < relief]]))
         # What answers to another output of the component has the rate of that.
-        if fault.kind in (HALF_RATE, SLOWER) and (is_timed or self._answers_others(output)):
-            left = 0.5 if fault.kind == HALF_RATE else SLOWER_RATE
+        if fault.kind in (HALF_RATE, SLOWER) and (is_timed or answers):
+            left = 0.5 if fault.kind == HALF_RATE else _SLOWER_RATE
             return times[~hit | (np.diff(np.floor(np.arange(-1, len(times)) * left)) > 0)]
         return times
 
@@ -300,9 +289,8 @@ def _waiting(scene: Scene, origin: int) -> List[Waiting]:
     until = origin + nanoseconds(scene.recorded_from)
     for start, length in zip(*scene.stalls):
         end = origin + nanoseconds(start + length)
-        stalled_at = max(origin + nanoseconds(start), until)
-        if end > stalled_at:
-            stretches += [Waiting(until, stalled_at, 0),
-                          Waiting(stalled_at, end, end - stalled_at)]
+        begin = max(origin + nanoseconds(start), until)
+        if end > begin:
+            stretches += [Waiting(until, begin, 0), Waiting(begin, end, end - begin)]
             until = end
     return stretches

@@ -31,20 +31,15 @@ STARVED = 'starved CPU'  # all messages wait, longer and longer within 20 s
 SILENT = 'everything silent'  # nobody sends
 
 LONGEST_START_S = 90_000.0  # a start of the robot lasts no longer than this [s]
-
+# A recording begins on a robot that has run for this long [s]; the longest answers fit into it.
 LEAD_S = 10.0
-"""A recording begins on a robot that has run for this long [s]; the longest answers fit into it.
-"""
-
 LASTS_S = 2.0  # what follows a crash lasts for so long [s]
-
 _TRANSPORT_S = 0.0002
 _LINK_S = 0.004
 _SHORTEST_LINK, _LONGEST_LINK = 0.7, 1.5
 _LINK_HEAVY = 10.0
 _HICCUP_S = 0.02
 _SOON_S = 0.15
-_HOUR_S = 3600.0
 
 
 @dataclass(frozen=True)
@@ -89,8 +84,7 @@ class Conditions:
         turn = 2.0 * np.pi * (times / self.load_period_s + phase)
         return 1.0 + (self.most_load - 1.0) * (1.0 - np.cos(turn)) / 2.0
 
-    def transport(self, sent: np.ndarray, over_link: bool,
-                  rng: np.random.Generator) -> np.ndarray:
+    def transport(self, sent: np.ndarray, over_link: bool, rng: np.random.Generator) -> np.ndarray:
         """Return when messages arrive that were sent at some times [s], in their order."""
         # A row for each message: what comes later does not change it.
         drawn = rng.uniform(size=(len(sent), 3))
@@ -116,9 +110,8 @@ class Conditions:
     def stalls(self, begin: float, end: float,
                rng: np.random.Generator) -> Tuple[np.ndarray, np.ndarray]:
         """Return when the host stalls, and for how long [s]."""
-        number = rng.poisson((end - begin) / _HOUR_S * self.stalls_an_hour)
-        return (np.sort(rng.uniform(begin, end, number)),
-                rng.uniform(*self.stall_s, number))
+        number = rng.poisson((end - begin) / 3600.0 * self.stalls_an_hour)
+        return np.sort(rng.uniform(begin, end, number)), rng.uniform(*self.stall_s, number)
 
 
 def in_order(times: np.ndarray) -> np.ndarray:
@@ -158,19 +151,18 @@ class Scene:
         self.conditions = conditions
         self.fault = fault
         self.published: List[np.ndarray] = []
+        # When an output was asked, and when it answered.
         self.answers: Dict[int, Tuple[np.ndarray, np.ndarray]] = {}
-        """When an output was asked, and when it answered [s]."""
         self._seed = (robot_seed, start_seed)
         self._recording = round(recorded_from * 1e3)
         self._edges = {name: activity.edges(self.begin, self.end, self.of_recording(name))
                        for name, activity in activities.items()}
+        # When the host stalls, and for how long.
         self.stalls = conditions.stalls(self.begin, end, self.of_recording('stalls'))
-        """When the host stalls, and for how long [s]."""
         if fault.kind == STALL:
-            begins, lengths = self.stalls
-            place = np.searchsorted(begins, recorded_from + fault.follows_s)
-            self.stalls = (np.insert(begins, place, recorded_from + fault.follows_s),
-                           np.insert(lengths, place, LASTS_S))
+            begin, (begins, lengths) = recorded_from + fault.follows_s, self.stalls
+            place = np.searchsorted(begins, begin)
+            self.stalls = np.insert(begins, place, begin), np.insert(lengths, place, LASTS_S)
         self._day_phase = self.of_start('time of day').uniform(0.0, 1.0)
 
     def of_start(self, purpose: str) -> np.random.Generator:

@@ -21,7 +21,7 @@ RELIABILITY = 'reliability/README.md'  # the page of soak and recovery, in the f
 
 
 def add(parts: Any) -> None:
-    """Add the four commands to the subparsers of `evaluate`."""
+    minutes = options.within(1.2, 60_000.0, 'minutes')
     live = parts.add_parser(
         'live', help='the follow-me robot as 15 processes, and the monitor',
         description='Starts master and robot, records, trains and calibrates, starts the monitor, '
@@ -35,9 +35,9 @@ def add(parts: Any) -> None:
         'starts them once more, with the monitor, watches them undisturbed, and then breaks one '
         'after the other; with the default options, this takes an hour and a half. '
         'scripts/packaged_nodes_env.sh installs the nodes and runs this.')
-    _add_minutes(nodes, '--minutes', 60.0, 'normal operation that is watched')
-    _add_minutes(nodes, '--burst-minutes', 20.0,
-                 'the same after that, beside short bursts of foreign load')
+    options.add(nodes, '--minutes', minutes, 60.0, 'MIN', 'normal operation that is watched')
+    options.add(nodes, '--burst-minutes', minutes, 20.0, 'MIN',
+                'the same after that, beside short bursts of foreign load')
     _add_session(nodes, 'nodes', Learning(3, 150.0, 1, 250.0))
 
     soak = parts.add_parser(
@@ -46,7 +46,7 @@ def add(parts: Any) -> None:
         'the monitor, and lets faults drawn by the seed hit the robot. It fails if one is missed, '
         'if an alarm comes without one, or if the memory of the monitor grows. scripts/soak.sh '
         'runs this.')
-    _add_minutes(soak, '--minutes', 60.0, 'how long the monitor runs')
+    options.add(soak, '--minutes', minutes, 60.0, 'MIN', 'how long the monitor runs')
     options.add(soak, '--seed', cli.count, 1, 'N', 'of the faults and the robot')
     _add_session(soak, 'soak', Learning(4, 90.0, 4, 120.0), 'docs', RELIABILITY)
 
@@ -56,13 +56,9 @@ def add(parts: Any) -> None:
         'robot. It fails if the driver is not back in time, or if a healthy node is restarted. '
         'scripts/recovery.sh runs this.')
     options.add(recovery, '--times', cli.count, 20, 'N', 'that the laser driver hangs')
-    _add_minutes(recovery, '--minutes', 60.0, 'of faults at random after that')
+    options.add(recovery, '--minutes', minutes, 60.0, 'MIN', 'of faults at random after that')
     options.add(recovery, '--seed', cli.count, 1, 'N', 'of the faults and the robot')
     _add_session(recovery, 'recovery', Learning(2, 90.0, 1, 90.0), 'docs', RELIABILITY)
-
-
-def _add_minutes(parser: argparse.ArgumentParser, name: str, default: float, told: str) -> None:
-    options.add(parser, name, options.minutes, default, 'MIN', told)
 
 
 def _add_session(parser: argparse.ArgumentParser, name: str, learning: Learning,
@@ -107,12 +103,8 @@ def _run(arguments: argparse.Namespace, command: str) -> None:
 
 def write(arguments: argparse.Namespace, command: str, rows: Sequence[Row], lines: Sequence[str],
           wrong: Sequence[str]) -> None:
-    """Write the section of a page, which is made if it is not there; wrong: what was not as it
-    should be.
-
-    Raises:
-        ValueError: not all was as it should be; the message says what was wrong.
-    """
+    """Write the section of a page, which is made if it is not there; raise ValueError with what
+    was not as it should be, if anything was."""
     path = arguments.output / arguments.page
     loads = [row.load for row in rows if row.load]
     learning = arguments.learning

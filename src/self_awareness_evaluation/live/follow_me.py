@@ -4,13 +4,12 @@ from __future__ import annotations
 import contextlib
 import itertools
 import subprocess
-import time
-from typing import ContextManager, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
+from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Tuple
 
 from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, WARM_UP_S, Processes,
                                                       await_condition, wait)
 from self_awareness_evaluation.live.rows import CRASH, DOUBLE, HALF, HANG
-from self_awareness_evaluation.live.session import TopicListener, broken_by, heard, stopped
+from self_awareness_evaluation.live.session import Broken, heard, listening, stopped
 from self_awareness_evaluation.simulated import default_faults
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Crash, Intruder, Silence
@@ -23,13 +22,8 @@ class FollowMe:
 
     def __init__(self, processes: Processes, seed: int, speed: float = 1.0,
                  respawn: bool = False) -> None:
-        """Start nothing yet.
-
-        Args:
-            seed: of all starts; each has another one of its own.
-            speed: in its usual one.
-            respawn: roslaunch starts nodes again that end.
-        """
+        """Start nothing yet; seed: of all starts, each of which has another one of its own; speed:
+        in its usual one; respawn: roslaunch starts nodes again that end."""
         self._scenario = load_scenario()
         self._processes = processes
         self._seeds = itertools.count(1000 * seed + 1)
@@ -38,9 +32,9 @@ class FollowMe:
         self._running: Optional[subprocess.Popen] = None
         crashes = [name.partition(':')[2] for name in default_faults(self._scenario)
                    if name.startswith(f'{CRASH}:')]
+        # One topic of each component that publishes all the time.
         self.topics: Dict[str, str] = {
             name: f'/{next(iter(self._scenario.component(name).outputs()))}' for name in crashes}
-        """One topic of each component that publishes all the time."""
 
     def start(self) -> None:
         """Start all; wait until they do what they do all the time, or raise LiveError."""
@@ -52,7 +46,6 @@ class FollowMe:
         wait(WARM_UP_S, 'warming up')
 
     def end(self) -> None:
-        """End all components."""
         if self._running is not None:
             self._processes.end(self._running)
             self._running = None
@@ -63,10 +56,8 @@ class FollowMe:
         return (f'/{component}',) if kind == HANG else effect_of(self._scenario, name).culprits
 
     def possible(self) -> List[str]:
-        """Return the faults that can hit at random: those of every regular component.
-
-        Components that only speak now and then are left out: they may be silent for seconds.
-        """
+        """Return the faults that can hit at random: those of every regular component. Components
+        that only speak now and then are left out: they may be silent for seconds."""
         found = []
         for name in (f'{kind}:{component}' for component in self.topics
                      for kind in (CRASH, HANG, HALF, DOUBLE)):
@@ -75,16 +66,10 @@ class FollowMe:
                 found.append(name)
         return found
 
-    def broken(self, name: str) -> ContextManager[float]:
-        """Return what induces a fault, hands out its onset [s since 1970], and undoes it.
-
-        Who was killed is started again, if roslaunch does not do it, and heard; the whole robot,
-        too, if all were.
-
-        Entering and leaving it raise:
-            InduceError: it cannot be induced.
-            LiveError: who was killed is not heard again.
-        """
+    def broken(self, name: str) -> Broken:
+        """Return what induces and undoes a fault. Who was killed is started again, if roslaunch
+        does not do it, and heard; the whole robot, too, if all were. It raises InduceError if it
+        cannot be induced, and LiveError if who was killed is not heard again."""
         kind, _, component = name.partition(':')
         if kind == HANG:
             return stopped(induction.process_id(f'/{component}'))
@@ -95,13 +80,13 @@ class FollowMe:
             return self._silenced()
         if isinstance(effect, Intruder):
             return self._intruded(effect)
-        return broken_by(induction.lasting(effect, name))
+        return induction.lasting(effect, name)
 
     @contextlib.contextmanager
-    def _killed(self, effect: Crash) -> Iterator[float]:
+    def _killed(self, effect: Crash) -> Iterator[None]:
         name = effect.component
         induction.crash(effect)
-        yield time.time()
+        yield
         with heard(self._expected([name] if name in self.topics else [])):
             if not self._respawn:
                 self._processes.start(
@@ -109,9 +94,9 @@ class FollowMe:
                     str(next(self._seeds)), '--speed', f'{self._speed:g}', f'__name:={name}')
 
     @contextlib.contextmanager
-    def _silenced(self) -> Iterator[float]:
+    def _silenced(self) -> Iterator[None]:
         induction.silence(self._scenario)
-        yield time.time()
+        yield
         self.end()
         self.start()
 
@@ -119,11 +104,11 @@ class FollowMe:
     def _intruded(self, effect: Intruder) -> Iterator[float]:
         source, = effect.culprits
         topic = f'/{next(iter(effect.spec.outputs()))}'
-        with TopicListener([topic]) as listener, induction.intruding(effect):
+        with listening([topic]) as last, induction.intruding(effect):
             # It takes seconds to start: the fault begins with its first message.
-            await_condition(f'{source} publishes {topic}',
-                            lambda: listener.last(source, topic) > 0.0, STARTED_WITHIN_S)
-            yield listener.last(source, topic)
+            await_condition(f'{source} publishes {topic}', lambda: last(source, topic) > 0.0,
+                            STARTED_WITHIN_S)
+            yield last(source, topic)
 
     def _expected(self, components: Iterable[str]) -> Sequence[Tuple[str, str]]:
         return [(f'/{name}', self.topics[name]) for name in components]

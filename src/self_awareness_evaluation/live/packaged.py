@@ -2,11 +2,12 @@
 from __future__ import annotations
 
 import contextlib
+import shlex
 import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ContextManager, Dict, Iterator, List, Sequence, Tuple
+from typing import Any, Dict, Iterator, List, Sequence, Tuple
 
 import numpy as np
 import rosbag
@@ -18,7 +19,7 @@ from sensor_msgs.msg import (BatteryState, CameraInfo, Image, Imu, LaserScan, Ma
                              NavSatFix)
 
 from self_awareness_evaluation.live.processes import WARM_UP_S, Processes, unregister, wait
-from self_awareness_evaluation.live.session import BUSY, broken_by, heard, stopped
+from self_awareness_evaluation.live.session import BUSY, Broken, heard, stopped
 from self_awareness_follow_me import induction
 
 
@@ -27,11 +28,10 @@ class Node:
     """A program of a ROS package."""
 
     name: str  # of the node, after the first slash
-    package: str  # of ROS
-    program: str  # of the package
-    arguments: Tuple[str, ...]  # to the program; remappings and private parameters included
-    # On which it publishes all the time; those of a nodelet come from its manager.
-    topics: Tuple[str, ...] = ()
+    command: str  # package, program and arguments, as a shell has them after rosrun
+    # On which it publishes all the time, with spaces between; those of a nodelet come from its
+    # manager.
+    topics: str = ''
     file: str = ''  # of write_drivers(), the last argument; empty: none
     manager: str = ''  # node into which it loads a nodelet; empty: none
 
@@ -45,149 +45,117 @@ RESTART = 'ended and started again at once'
 HALF_RATE = 'publishes at half its rate'
 STARVE = 'four busy processes on every core'
 
-
-def _driver(name: str, *topics: str) -> Node:
-    """Return the replay of the bag of that name."""
-    return Node(name, 'rosbag', 'play', ('--loop', '--quiet'), topics, f'{name}.bag')
+_PLAY = 'rosbag play --loop --quiet'
+_MANAGER = 'nodelet nodelet manager'
 
 
-def _manager(name: str, *topics: str) -> Node:
-    return Node(name, 'nodelet', 'nodelet', ('manager',), topics)
+def _nodelet(name: str, kind: str, manager: str, arguments: str) -> Node:
+    return Node(name, f'nodelet nodelet load {kind} {manager} {arguments}', manager=manager)
 
 
-def _nodelet(name: str, kind: str, manager: str, *arguments: str) -> Node:
-    return Node(name, 'nodelet', 'nodelet', ('load', kind, manager, *arguments), manager=manager)
-
-
-def _tool(name: str, program: str, output: str, *arguments: str) -> Node:
-    """Return a node of topic_tools."""
-    return Node(name, 'topic_tools', program, arguments, (output,))
-
-
-_GOAL = '{goal: {target_frame: base_link, source_frame: laser}}'
-
-NODES = (
+NODES = (  # in the order in which they are started
     # Drivers, replayed from bags of a minute, whose stamps vary as those of devices do.
-    _driver('lidar', '/scan'),
-    _driver('imu', '/imu/data', '/imu/mag'),
-    _driver('base', '/odom', '/battery'),
-    _driver('gps', '/fix', '/vel'),
-    _driver('depth_camera', '/depth/image_raw', '/depth/camera_info'),
+    Node('lidar', _PLAY, '/scan', 'lidar.bag'),
+    Node('imu', _PLAY, '/imu/data /imu/mag', 'imu.bag'),
+    Node('base', _PLAY, '/odom /battery', 'base.bag'),
+    Node('gps', _PLAY, '/fix /vel', 'gps.bag'),
+    Node('depth_camera', _PLAY, '/depth/image_raw /depth/camera_info', 'depth_camera.bag'),
     # Cameras, which publish the same picture over and over.
-    *(Node(name, 'image_publisher', 'image_publisher', (f'_publish_rate:={rate_hz:g}',),
-           (f'/{name}/image_raw', f'/{name}/camera_info'), f'{name}.png')
+    *(Node(name, f'image_publisher image_publisher _publish_rate:={rate_hz:g}',
+           f'/{name}/image_raw /{name}/camera_info', f'{name}.png')
       for name, rate_hz in CAMERAS_HZ.items()),
     # Two managers with nodelets.
-    _manager('vision', '/front/image_mono', '/front/image_color', '/front/image_rect',
-             '/front/preview/image_raw', '/front/preview/camera_info',
-             '/front_edges/image'),
-    _nodelet('front_debayer', 'image_proc/debayer', 'vision', 'image_raw:=/front/image_raw',
-             'image_mono:=/front/image_mono', 'image_color:=/front/image_color'),
-    _nodelet('front_rectify', 'image_proc/rectify', 'vision', 'image_mono:=/front/image_mono',
-             'camera_info:=/front/camera_info', 'image_rect:=/front/image_rect'),
+    Node('vision', _MANAGER, '/front/image_mono /front/image_color /front/image_rect '
+         '/front/preview/image_raw /front/preview/camera_info /front_edges/image'),
+    _nodelet('front_debayer', 'image_proc/debayer', 'vision', 'image_raw:=/front/image_raw '
+             'image_mono:=/front/image_mono image_color:=/front/image_color'),
+    _nodelet('front_rectify', 'image_proc/rectify', 'vision', 'image_mono:=/front/image_mono '
+             'camera_info:=/front/camera_info image_rect:=/front/image_rect'),
     _nodelet('front_preview', 'image_proc/crop_decimate', 'vision',
-             '_decimation_x:=2', '_decimation_y:=2',
-             'camera/image_raw:=/front/image_raw', 'camera/camera_info:=/front/camera_info',
-             'camera_out/image_raw:=/front/preview/image_raw',
+             '_decimation_x:=2 _decimation_y:=2 '
+             'camera/image_raw:=/front/image_raw camera/camera_info:=/front/camera_info '
+             'camera_out/image_raw:=/front/preview/image_raw '
              'camera_out/camera_info:=/front/preview/camera_info'),
     _nodelet('front_edges', 'opencv_apps/edge_detection', 'vision', 'image:=/front/image_color'),
-    _manager('depth', '/depth/image', '/depth/points', '/depth/foremost'),
+    Node('depth', _MANAGER, '/depth/image /depth/points /depth/foremost'),
     _nodelet('depth_metric', 'depth_image_proc/convert_metric', 'depth',
-             'image_raw:=/depth/image_raw', 'image:=/depth/image'),
+             'image_raw:=/depth/image_raw image:=/depth/image'),
     _nodelet('depth_points', 'depth_image_proc/point_cloud_xyz', 'depth',
-             'image_rect:=/depth/image', 'camera_info:=/depth/camera_info',
-             'points:=/depth/points'),
+             'image_rect:=/depth/image camera_info:=/depth/camera_info points:=/depth/points'),
     _nodelet('depth_foremost', 'depth_image_proc/crop_foremost', 'depth',
-             'image_raw:=/depth/image_raw', 'image:=/depth/foremost'),
+             'image_raw:=/depth/image_raw image:=/depth/foremost'),
     # The same and more as nodes of their own.
-    Node('rear/image_proc', 'image_proc', 'image_proc', (),
-         ('/rear/image_mono', '/rear/image_rect', '/rear/image_color',
-          '/rear/image_rect_color')),
-    Node('rear_threshold', 'opencv_apps', 'threshold', ('image:=/rear/image_raw',),
-         ('/rear_threshold/image',)),
-    Node('rear_contours', 'opencv_apps', 'find_contours', ('image:=/rear/image_raw',),
-         ('/rear_contours/contours', '/rear_contours/image')),
+    Node('rear/image_proc', 'image_proc image_proc',
+         '/rear/image_mono /rear/image_rect /rear/image_color /rear/image_rect_color'),
+    Node('rear_threshold', 'opencv_apps threshold image:=/rear/image_raw',
+         '/rear_threshold/image'),
+    Node('rear_contours', 'opencv_apps find_contours image:=/rear/image_raw',
+         '/rear_contours/contours /rear_contours/image'),
     # Transforms.
-    Node('robot_state_publisher', 'robot_state_publisher', 'robot_state_publisher', (),
-         ('/tf',)),
-    Node('joint_state_publisher', 'joint_state_publisher', 'joint_state_publisher', (),
-         ('/joint_states',)),
-    Node('gps_mount', 'tf2_ros', 'static_transform_publisher',
-         ('0', '0', '0.4', '0', '0', '0', 'base_link', 'gps')),
-    Node('map_to_odom', 'tf', 'static_transform_publisher',
-         ('0', '0', '0', '0', '0', '0', 'map', 'odom', '50'), ('/tf',)),
+    Node('robot_state_publisher', 'robot_state_publisher robot_state_publisher', '/tf'),
+    Node('joint_state_publisher', 'joint_state_publisher joint_state_publisher', '/joint_states'),
+    Node('gps_mount', 'tf2_ros static_transform_publisher 0 0 0.4 0 0 0 base_link gps'),
+    Node('map_to_odom', 'tf static_transform_publisher 0 0 0 0 0 0 map odom 50', '/tf'),
     # An action server and who asks it.
-    Node('transforms', 'tf2_ros', 'buffer_server', (),
-         ('/tf2_buffer_server/status', '/tf2_buffer_server/result')),
-    Node('planner', 'rostopic', 'rostopic',
-         ('pub', '--rate', '0.5', '/tf2_buffer_server/goal', 'tf2_msgs/LookupTransformActionGoal',
-          _GOAL), ('/tf2_buffer_server/goal',)),
+    Node('transforms', 'tf2_ros buffer_server',
+         '/tf2_buffer_server/status /tf2_buffer_server/result'),
+    Node('planner', 'rostopic rostopic pub --rate 0.5 /tf2_buffer_server/goal '
+         'tf2_msgs/LookupTransformActionGoal '
+         '"{goal: {target_frame: base_link, source_frame: laser}}"', '/tf2_buffer_server/goal'),
     # Topic tools.
-    _tool('scan_throttle', 'throttle', '/scan_slow', 'messages', '/scan', '4', '/scan_slow'),
-    _tool('points_throttle', 'throttle', '/points_slow', 'messages', '/depth/points', '2',
-          '/points_slow'),
-    _tool('imu_drop', 'drop', '/imu_half', '/imu/data', '1', '2', '/imu_half'),
-    _tool('scan_relay', 'relay', '/scan_relayed', '/scan', '/scan_relayed'),
-    _tool('position', 'transform', '/position', '/odom', '/position', 'geometry_msgs/Point',
-          'm.pose.pose.position', '--import', 'geometry_msgs'),
-    Node('joystick', 'rostopic', 'rostopic',
-         ('pub', '--rate', '5', '/cmd_vel_joystick', 'geometry_msgs/Twist',
-          '{linear: {x: 0.1}}'), ('/cmd_vel_joystick',)),
-    _tool('velocity_mux', 'mux', '/cmd_vel', '/cmd_vel', '/cmd_vel_joystick', '/cmd_vel_planner'),
+    Node('scan_throttle', 'topic_tools throttle messages /scan 4 /scan_slow', '/scan_slow'),
+    Node('points_throttle', 'topic_tools throttle messages /depth/points 2 /points_slow',
+         '/points_slow'),
+    Node('imu_drop', 'topic_tools drop /imu/data 1 2 /imu_half', '/imu_half'),
+    Node('scan_relay', 'topic_tools relay /scan /scan_relayed', '/scan_relayed'),
+    Node('position', 'topic_tools transform /odom /position geometry_msgs/Point '
+         'm.pose.pose.position --import geometry_msgs', '/position'),
+    Node('joystick', 'rostopic rostopic pub --rate 5 /cmd_vel_joystick geometry_msgs/Twist '
+         '"{linear: {x: 0.1}}"', '/cmd_vel_joystick'),
+    Node('velocity_mux', 'topic_tools mux /cmd_vel /cmd_vel_joystick /cmd_vel_planner',
+         '/cmd_vel'),
     # Diagnostics.
-    Node('diagnostic_aggregator', 'diagnostic_aggregator', 'aggregator_node', (),
-         ('/diagnostics_agg',)),
-    Node('cpu_monitor', 'diagnostic_common_diagnostics', 'cpu_monitor.py', (), ('/diagnostics',)),
-    Node('ram_monitor', 'diagnostic_common_diagnostics', 'ram_monitor.py', (), ('/diagnostics',)),
+    Node('diagnostic_aggregator', 'diagnostic_aggregator aggregator_node', '/diagnostics_agg'),
+    Node('cpu_monitor', 'diagnostic_common_diagnostics cpu_monitor.py', '/diagnostics'),
+    Node('ram_monitor', 'diagnostic_common_diagnostics ram_monitor.py', '/diagnostics'),
 )
-"""In the order in which they are started."""
 
+# Kind, node (empty: the whole machine) and length [s], in the order in which they are induced.
 FAULTS = (
     *((KILL, node, 10.0) for node in ('lidar', 'vision', 'robot_state_publisher', 'joystick')),
     *((STOP, node, 10.0) for node in ('depth_camera', 'transforms')),
     *((RESTART, node, 10.0) for node in ('base', 'rear_threshold')),
-    *((HALF_RATE, node, 20.0) for node in CAMERAS_HZ),
-    (STARVE, '', 15.0),
-)
-"""Kind, node (empty: the whole machine) and length [s], in the order in which they are induced."""
+    *((HALF_RATE, node, 20.0) for node in CAMERAS_HZ), (STARVE, '', 15.0))
 
 _ROBOT_DESCRIPTION = """\
 <robot name="cart">
   <link name="base_link"/><link name="laser"/><link name="pan"/><link name="camera"/>
   <joint name="laser_mount" type="fixed">
-    <parent link="base_link"/><child link="laser"/><origin xyz="0.2 0 0.1"/>
-  </joint>
+    <parent link="base_link"/><child link="laser"/><origin xyz="0.2 0 0.1"/></joint>
   <joint name="pan_joint" type="continuous">
-    <parent link="base_link"/><child link="pan"/><axis xyz="0 0 1"/><origin xyz="0 0 0.5"/>
-  </joint>
+    <parent link="base_link"/><child link="pan"/><axis xyz="0 0 1"/><origin xyz="0 0 0.5"/></joint>
   <joint name="camera_joint" type="revolute">
     <parent link="pan"/><child link="camera"/><axis xyz="0 1 0"/>
-    <limit lower="-1" upper="1" effort="1" velocity="1"/>
-  </joint>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
 </robot>
 """
 
-PARAMETERS: Dict[str, Any] = {
+PARAMETERS: Dict[str, Any] = {  # what the nodes read from the parameter server
     '/robot_description': _ROBOT_DESCRIPTION,
     '/diagnostic_aggregator/analyzers': {
         'computer': {'type': 'diagnostic_aggregator/GenericAnalyzer', 'path': 'computer',
                      'contains': ['CPU', 'RAM']}}}
-"""What the nodes read from the parameter server."""
 
 _LENGTH_S = 60.0
 _JITTER = 0.02  # of the period, as one standard deviation
 _BEGIN_S = 1.0e9  # any time but 0
-_SEED = 1
 _WIDTH, _HEIGHT = 64, 48
 _FOCAL_LENGTH = 60.0  # pixels
-
-_RATE = 'publish_rate'  # of image_publisher
-_SERVICE_WITHIN_S = 10.0
 
 
 def write_drivers(folder: Path) -> None:
     """Write everything into a folder that exists; it is the same every time."""
-    random = np.random.default_rng(_SEED)
+    random = np.random.default_rng(1)
     for name, topics in _bags().items():
         _write_bag(folder / f'{name}.bag', topics, random)
     across, down = np.meshgrid(np.linspace(0.0, 1.0, _WIDTH), np.linspace(0.0, 1.0, _HEIGHT))
@@ -218,8 +186,7 @@ def _bags() -> Dict[str, _Topics]:
     return {
         'lidar': {('/scan',): (10.0, (scan,))},
         'imu': {('/imu/data',): (50.0, (Imu(),)), ('/imu/mag',): (20.0, (MagneticField(),))},
-        'base': {('/odom',): (20.0, (odometry,)),
-                 ('/battery',): (1.0, (BatteryState(),))},
+        'base': {('/odom',): (20.0, (odometry,)), ('/battery',): (1.0, (BatteryState(),))},
         'gps': {('/fix', '/vel'): (5.0, (NavSatFix(), TwistStamped()))},
         'depth_camera': {('/depth/image_raw', '/depth/camera_info'): (8.0, (depth, info))}}
 
@@ -257,24 +224,21 @@ class PackagedSystem:
         """End all nodes, the last one first: nodelets before their managers."""
         self._end([node for node in NODES if node.name in self._running])
 
-    def broken(self, kind: str, node: str) -> ContextManager[float]:
-        """Return what induces a fault, hands out its onset [s since 1970], and undoes it.
-
-        Entering and leaving it raise:
-            LiveError: it cannot be induced, or the node does not publish again.
-        """
+    def broken(self, kind: str, node: str) -> Broken:
+        """Return what induces and undoes a fault; it raises LiveError if it cannot be induced, or
+        the node does not publish again."""
         if kind == KILL:
             return self._killed(node)
         if kind == STOP:
             return stopped(self._running[node].pid)
         if kind == RESTART:
             return self._restarted(node)
-        return _halved(node) if kind == HALF_RATE else broken_by(induction.starved(BUSY))
+        return _halved(node) if kind == HALF_RATE else induction.starved(BUSY)
 
     @contextlib.contextmanager
-    def _killed(self, name: str) -> Iterator[float]:
+    def _killed(self, name: str) -> Iterator[None]:
         self._running[name].kill()
-        yield time.time()
+        yield
         self._restart(name)
 
     @contextlib.contextmanager
@@ -290,7 +254,7 @@ class PackagedSystem:
         self._start(nodes)
 
     def _start(self, nodes: Sequence[Node]) -> None:
-        with heard([(f'/{node.name}', topic) for node in nodes for topic in node.topics]):
+        with heard([(f'/{node.name}', topic) for node in nodes for topic in node.topics.split()]):
             for node in nodes:
                 self._running[node.name] = self._processes.start(
                     node.name.replace('/', '_'), *self._command(node))
@@ -302,19 +266,19 @@ class PackagedSystem:
 
     def _command(self, node: Node) -> List[str]:
         namespace, _, name = f'/{node.name}'.rpartition('/')
-        return ['rosrun', node.package, node.program, *node.arguments,
-                *([str(self._folder / node.file)] if node.file else []),
-                f'__name:={name}', f'__ns:={namespace or "/"}']
+        file = [str(self._folder / node.file)] if node.file else []
+        return ['rosrun', *shlex.split(node.command), *file, f'__name:={name}',
+                f'__ns:={namespace or "/"}']
 
 
 @contextlib.contextmanager
-def _halved(name: str) -> Iterator[float]:
+def _halved(name: str) -> Iterator[None]:
     # Installed with the nodes; only here it is needed.
     from dynamic_reconfigure.client import Client
-    client = Client(f'/{name}', timeout=_SERVICE_WITHIN_S)
+    client = Client(f'/{name}', timeout=10.0)
     try:
-        client.update_configuration({_RATE: CAMERAS_HZ[name] / 2.0})
-        yield time.time()
+        client.update_configuration({'publish_rate': CAMERAS_HZ[name] / 2.0})
+        yield
     finally:
-        client.update_configuration({_RATE: CAMERAS_HZ[name]})
+        client.update_configuration({'publish_rate': CAMERAS_HZ[name]})
         client.close()

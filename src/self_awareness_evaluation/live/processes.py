@@ -17,10 +17,7 @@ import rospy
 from self_awareness import progress
 
 WARM_UP_S = 10.0  # so long after the start of a robot is no normal operation yet [s]
-
-STARTED_WITHIN_S = 90.0
-"""What is started, robot or monitor, has said something after so long at the latest [s]."""
-
+STARTED_WITHIN_S = 90.0  # until then, what is started, robot or monitor, has said something [s]
 _END_WITHIN_S = 30.0  # roslaunch takes half of it before it kills its nodes, which only it can
 _POLL_S = 0.05
 
@@ -65,10 +62,8 @@ def becomes_true(condition: Callable[[], bool], within_s: float) -> bool:
 
 
 class Processes:
-    """Programs that run at the same time as this one; their output goes to files of a folder.
-
-    As a context manager it ends all that still run.
-    """
+    """Programs that run at the same time as this one; their output goes to files of a folder. As a
+    context manager it ends all that still run."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -126,13 +121,8 @@ def _signal(process: subprocess.Popen, number: int) -> bool:
 @contextlib.contextmanager
 def own_master(folder: Path, node: str, pinned: Sequence[str] = ()) -> Iterator[Processes]:
     """Start a master on a free port of the loopback interface, and make this process a node of it;
-    nothing of it runs on afterwards.
-
-    Args:
-        folder: for the logs of all processes that are started.
-        node: what this process is called.
-        pinned: command that runs the master on some cores; empty: on any.
-    """
+    nothing of it runs on afterwards. The folder is for the logs of all processes that are started;
+    pinned: command that runs the master on some cores; empty: on any."""
     port = free_port()
     os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1',
                       ROS_LOG_DIR=str(folder / 'log'))
@@ -149,14 +139,9 @@ def own_master(folder: Path, node: str, pinned: Sequence[str] = ()) -> Iterator[
 
 
 def unregister(ended: Sequence[str]) -> None:
-    """Take back what nodes that have ended left at the master.
-
+    """Take back what nodes that have ended left at the master; raise LiveError if that is silent.
     When such a node is started again, the master has the one before shut down, at a port that
-    another node may have by then.
-
-    Raises:
-        LiveError: the master does not answer.
-    """
+    another node may have by then."""
     try:
         left = sorted(set(rosnode.get_node_names()) & set(ended))
         rosnode.cleanup_master_blacklist(rosgraph.Master('/evaluate'), left)

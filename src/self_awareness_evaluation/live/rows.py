@@ -4,20 +4,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from statistics import median, median_low
 from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
 from self_awareness.calibration import confidence
-from self_awareness_evaluation.figures import of_all, seconds, table
+from self_awareness_evaluation.figures import counted, grouped, of_all, seconds, table
 from self_awareness_evaluation.rows import AFTERMATH_S
 
 CRASH, HANG, HALF, DOUBLE = 'crash', 'hang', 'half', 'double'
 """Kinds of faults that hit any component: killed, its process stopped, at half or double rate."""
 
 DELAY_S = 1.0  # of `recovery`: an alarm stands for so long before a node is restarted [s]
-
 MUST_BE_FOUND_S = 2.0  # a fault that lasts for longer is missed if there is no alarm [s]
 
 BACK_WITHIN_S = 5.0
@@ -26,17 +26,12 @@ BACK_WITHIN_S = 5.0
 _MOST_SLOPE = 1.0  # of resident memory that counts as flat [MB an hour]
 _FILLED_S = 300.0  # until then memory may grow: the flight recorder fills its five minutes
 _LEAST_S = 300.0  # a slope of less is one of chance
-
 Told = Tuple[List[str], List[str]]  # the lines of a page, and what was not as it should be
-
-RESTARTED = 'restarted by the recovery'
-"""The fault of a row that tells of a node that the recovery has restarted."""
-
+RESTARTED = 'restarted by the recovery'  # the fault of a row that tells of such a node
 HANGS, AT_RANDOM = 1, 2  # rounds of a recovery: a node hangs again and again; faults at random
-
 ERROR, WARN = 2, 1  # levels of a status that are an alarm, and a suspicion
-_SEPARATOR = '; '  # between what was said of one alarm or suspicion, and of the next one
 _RECORDED = '; events in '  # before the file of the flight recorder, which only this machine has
+_FAULT = attrgetter('fault')  # of a row
 
 
 @dataclass(frozen=True)
@@ -70,10 +65,8 @@ class Incident(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """A stretch of time; the columns of the CSV files.
-
-    All after `load` may be None: where that does not apply, never came, or was not measured.
-    """
+    """A stretch of time; the columns of the CSV files. All after `load` may be None: where that
+    does not apply, never came, or was not measured."""
 
     fault: str  # its name; of normal operation: what that is called; or RESTARTED
     node: str  # that is broken, several with a space between; empty: none, or the whole machine
@@ -86,16 +79,17 @@ class Row:
     said: str = ''
     note: str = ''  # what did not go as planned
     load: float = 0.0  # the machine's load average of the last minute at the onset
-    alarms: Optional[int] = None  # of normal operation: how often an alarm (ERROR) was raised
-    # Of normal operation: how often there was a suspicion (WARN) that did not become an alarm.
+    # Of normal operation, how often an alarm (ERROR) was raised, and how often there was a
+    # suspicion (WARN) that did not become one; how many components the model watches, and knows.
+    alarms: Optional[int] = None
     suspicions: Optional[int] = None
-    # Of normal operation: how many the model watches, and knows.
     watched: Optional[int] = None
     components: Optional[int] = None
-    # From the onset to the first WARN or ERROR, and to the first ERROR.
+    # From the onset to the first WARN or ERROR, to the first ERROR, and to the first one that
+    # blames the node.
     suspicion_s: Optional[float] = None
     latency_s: Optional[float] = None
-    blamed_s: Optional[float] = None  # from the onset to the first ERROR that blames the node
+    blamed_s: Optional[float] = None
     first: Optional[bool] = None  # whether the node is the first suspect of the first ERROR
     # What was said when the fault was undone.
     end_level: Optional[int] = None
@@ -112,20 +106,17 @@ class Row:
     # From blamed_s to when a new process of the node was heard, by the recovery.
     back_s: Optional[float] = None
     events: Optional[int] = None  # that the monitor judged
-    # Resident memory of the monitor [MB], its threads, and its open files and connections, at the
-    # end.
+    # At the end, the monitor's resident memory [MB], threads, and open files and connections.
     memory_mb: Optional[float] = None
     threads: Optional[int] = None
     files: Optional[int] = None
 
     @property
     def is_normal(self) -> bool:
-        """Whether nothing was wrong."""
         return self.alarms is not None
 
     @property
     def is_fault(self) -> bool:
-        """Whether something was wrong with the robot."""
         return not self.is_normal and self.fault != RESTARTED
 
     @property
@@ -135,14 +126,9 @@ class Row:
 
 
 def measure(row: Row, statuses: Sequence[Status], incidents: Sequence[Incident] = ()) -> Row:
-    """Measure what the monitor said of a stretch of time.
-
-    Args:
-        row: what is known without it: of normal operation, with 0 alarms; of a fault, with
-            recovered_s, if the statuses go on after that. Its onset and lasted_s are the stretch.
-        statuses: of the whole session, in their order.
-        incidents: so far, in their order.
-    """
+    """Measure what the monitor said of a stretch of time, by all statuses and incidents so far.
+    The row has what is known without it: onset and lasted_s, the stretch; of normal operation 0
+    alarms; of a fault recovered_s, if the statuses go on after that."""
     before = [status for status in statuses if status.stamp <= row.onset][-1:]
     inside = [status for status in statuses
               if row.onset < status.stamp <= row.onset + row.lasted_s]
@@ -154,8 +140,8 @@ def measure(row: Row, statuses: Sequence[Status], incidents: Sequence[Incident] 
             * (sum(not status.settling for status in inside) / max(1, len(inside))),
             alarms=sum(status.level >= ERROR for status in begun),
             suspicions=sum(status.level == WARN for status in begun),
-            said=_SEPARATOR.join(f'{"ERROR" if status.level >= ERROR else "WARN"}: {status.words}'
-                                 for status in begun))
+            said='; '.join(f'{"ERROR" if status.level >= ERROR else "WARN"}: {status.words}'
+                           for status in begun))
     row = replace(row, void=row.void or _void(before, inside))
     if row.recovered_s is not None:
         row = replace(row, cleared_s=_cleared(row.end, statuses))
@@ -195,10 +181,8 @@ def _void(before: Sequence[Status], inside: Sequence[Status]) -> str:
 
 
 def _begun(before: Sequence[Status], inside: Sequence[Status]) -> List[Status]:
-    """Return the first status of every alarm, and of every suspicion beside them.
-
-    A suspicion before an alarm, or after it until all is well, is part of it.
-    """
+    """Return the first status of every alarm, and of every suspicion beside them. A suspicion
+    before an alarm, or after it until all is well, is part of it."""
     found: List[Status] = []
     level = highest = before[-1].level if before else 0
     for status in inside:
@@ -223,18 +207,15 @@ def _cleared(recovered: float, statuses: Sequence[Status]) -> float:
 
 def of_faults(rows: Sequence[Row]) -> Told:
     """Return a line on all faults that count, and one on each kind of normal operation."""
-    quiet = [row for row in rows if row.is_normal]
     faults = [row for row in rows if row.is_fault and not row.void]
-    named = [row.first for row in faults if row.first is not None]
-    raised = {row.fault for row in faults if row.latency_s is not None}
-    missed = ', '.join(fault for fault in dict.fromkeys(row.fault for row in faults)
-                       if fault not in raised)
+    missed = ', '.join(fault for fault, of_fault in grouped(faults, _FAULT).items()
+                       if all(row.latency_s is None for row in of_fault))
     return [f'- faults: alarms {_found([row.latency_s for row in faults])}; WARN or alarm '
             f'{_found([row.suspicion_s for row in faults])}; the right node first '
-            f'{of_all((sum(named), len(named)))}'
+            f'{of_all(counted(row.first for row in faults))}'
             + (f'; never an alarm: {missed}' if missed else ''),
-            *(_of_normal(kind, [row for row in quiet if row.fault == kind])
-              for kind in dict.fromkeys(row.fault for row in quiet)),
+            *(_of_normal(kind, of_kind) for kind, of_kind in
+              grouped((row for row in rows if row.is_normal), _FAULT).items()),
             *(f'- void: {row.fault} {row.node} ({row.void})' for row in rows if row.void)], []
 
 
@@ -279,20 +260,15 @@ def of_soak(rows: Sequence[Row]) -> Told:
                   f'{first.memory_mb or math.nan:.1f} MB, {last.memory_mb or math.nan:.1f} MB'],
                  ['threads, open files', '', f'{first.threads} and {first.files}, then '
                   f'{last.threads} and {last.files}']])]
-    kinds = {_kind(row) for row in faults}
     return [*lines, '', *table(
         ['fault', 'number', 'found', 'median time to the alarm', 'longest', 'named first',
          'alarm over after the end, median', 'longest'],
-        [_of_kind(kind, [row for row in faults if _kind(row) == kind])
-         for kind in sorted(kinds)])], wrong
+        [_of_kind(*each) for each in sorted(grouped(faults, _kind).items())])], wrong
 
 
 def slope_mb_per_hour(rows: Sequence[Row]) -> Optional[float]:
-    """Return the slope of the line through the resident memory, once the flight recorder is full.
-
-    Returns:
-        None: too little was seen for one.
-    """
+    """Return the slope of the line through the resident memory, once the flight recorder is full;
+    None: too little was seen for one."""
     seen = [(row.onset + row.lasted_s - rows[0].onset, row.memory_mb) for row in rows
             if row.memory_mb is not None]
     later = [each for each in seen if each[0] >= _FILLED_S]
@@ -328,11 +304,9 @@ def of_recovery(rows: Sequence[Row]) -> Told:
 
 
 def of_healthy(rows: Sequence[Row]) -> List[Row]:
-    """Return the restarts of nodes that did not hang or crash then, nor just had.
-
-    Each fault excuses one restart. Those that only change a rate excuse none: the rules are about
-    who has died.
-    """
+    """Return the restarts of nodes that did not hang or crash then, nor just had. Each fault
+    excuses one restart. Those that only change a rate excuse none: the rules are about who has
+    died."""
     left = list(_of_who_died(rows, HANG, CRASH))
     wrong = []
     for restart in _restarts(rows):
@@ -346,10 +320,8 @@ def of_healthy(rows: Sequence[Row]) -> List[Row]:
 
 
 def not_mended(rows: Sequence[Row]) -> List[Row]:
-    """Return the hangs that lasted on, although the node should have been restarted.
-
-    A hang that no alarm names should have been found in time all the same.
-    """
+    """Return the hangs that lasted on, although the node should have been restarted. A hang that
+    no alarm names should have been found in time all the same."""
     return [row for row in _of_who_died(rows, HANG)
             if row.end - row.onset > (MUST_BE_FOUND_S if row.blamed_s is None else row.blamed_s)
             + DELAY_S + BACK_WITHIN_S
@@ -377,9 +349,9 @@ def _kind(row: Row) -> str:
 
 
 def _of_kind(kind: str, rows: Sequence[Row]) -> List[str]:
-    found = [row for row in rows if row.latency_s is not None]
+    found = [row.latency_s for row in rows if row.latency_s is not None]
     cleared = [row.cleared_s for row in rows if row.cleared_s or row.latency_s is not None]
-    return [kind, str(len(rows)), str(len(found)), *_columns([row.latency_s for row in found]),
+    return [kind, str(len(rows)), str(len(found)), *_columns(found),
             str(sum(bool(row.first) for row in rows)), *_columns(cleared)]
 
 

@@ -30,28 +30,21 @@ from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Starvation
 from self_awareness_follow_me.induction import process_id
 
-APART_S = 70.0
-"""From the end of one bag to the beginning of the next one [s].
-
-Bags that follow each other within a minute count as one start."""
+# From the end of one bag to the beginning of the next one [s]: bags that follow each other within
+# a minute count as one start.
+_APART_S = 70.0
 
 BAGS, EVENTS = 'bags', 'events'  # what is recorded: whole messages, or event logs
 _TRAINING, _CALIBRATION, _MODEL = 'training', 'calibration', 'learned.model'  # names of files
 _WITHIN_S = 900.0
 _STATUS_WITHIN_S = 5.0  # of the last window of a stretch
 _CLOCK_STEP_S = 0.05  # a clock that moved by more than this was set
-
 _BURST_S = (0.2, 1.5)  # at least and at most
 _BETWEEN_BURSTS_S = 20.0  # on the average
 
-BUSY = Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)
-"""Four busy processes on every core take the machine."""
-
+BUSY = Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)  # they take the machine
 MONITOR = '/self_awareness'  # the monitor's node
-
-QUIET_S = 3.0
-"""The monitor has settled, and there is no alarm, for so long before the next fault [s]."""
-
+_QUIET_S = 3.0  # the monitor has settled, and there is no alarm, for so long before the next fault
 _NO_STATUS_S = 15.0  # a starved CPU takes its time
 _SERVICE_WITHIN_S = 10.0
 _QUIET_WITHIN_S = 15.0
@@ -59,25 +52,18 @@ _MOST_RESETS = 3
 
 
 @contextlib.contextmanager
-def broken_by(what: ContextManager[None]) -> Iterator[float]:
-    """Hand out since when something is broken that another with statement breaks and mends."""
-    with what:
-        yield time.time()
-
-
-@contextlib.contextmanager
-def stopped(pid: int) -> Iterator[float]:
+def stopped(pid: int) -> Iterator[None]:
     """Stop a process; it goes on at the end, if it still is there."""
     os.kill(pid, signal.SIGSTOP)
     try:
-        yield time.time()
+        yield
     finally:
         with contextlib.suppress(ProcessLookupError):  # it was killed, as it hung
             os.kill(pid, signal.SIGCONT)
 
 
 @contextlib.contextmanager
-def bursts(chance: random.Random) -> Iterator[float]:
+def bursts(chance: random.Random) -> Iterator[None]:
     """Let busy processes on all cores take the machine for a moment now and then."""
     over = threading.Event()
 
@@ -89,7 +75,7 @@ def bursts(chance: random.Random) -> Iterator[float]:
     thread = threading.Thread(target=take)
     thread.start()
     try:
-        yield time.time()
+        yield
     finally:
         over.set()
         thread.join()
@@ -98,11 +84,12 @@ def bursts(chance: random.Random) -> Iterator[float]:
 class System(Protocol):
     """A robot: start() waits until it is in normal operation, or raises LiveError."""
 
-    def start(self) -> None:
-        """Start it."""
+    def start(self) -> None: ...
+    def end(self) -> None: ...
 
-    def end(self) -> None:
-        """End it."""
+
+# Induces a fault, hands out its onset [s since 1970], or None: it is now, and undoes it.
+Broken = ContextManager[Optional[float]]
 
 
 @dataclass(frozen=True)
@@ -112,8 +99,7 @@ class Step:
     fault: str  # its name; of normal operation: what it is called
     lasts_s: float  # from the onset to when it is undone, at most [s]
     culprits: Tuple[str, ...] = ()  # sources to blame; empty: none, or the whole machine
-    # Induces it, hands out its onset [s since 1970], and undoes it.
-    broken: Callable[[], ContextManager[float]] = lambda: broken_by(contextlib.nullcontext())
+    broken: Callable[[], Broken] = contextlib.nullcontext
     is_normal: bool = False  # nothing is wrong
     round: int = 1  # number, from 1 on
     reset: bool = False  # the monitor's ~reset is called before
@@ -130,8 +116,7 @@ class Plan:
     what: str  # is recorded of it, to learn from (recordings)
     learning: Learning  # how much
     steps: Iterator[Step]  # drawn one after the other, while the session goes on
-    # A fault is over when there has been no alarm for so long after it was undone [s], AFTERMATH_S
-    # or more.
+    # After so long without an alarm a fault that was undone is over [s]; AFTERMATH_S or more.
     quiet_s: float
     quiet_within_s: float  # an alarm that stands for longer does not clear [s]; 0: nobody waits
     budget: float = BUDGET  # false alarms an hour that the limits allow
@@ -140,14 +125,9 @@ class Plan:
 
 
 def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], None]) -> None:
-    """Run a session; told: gets every row as soon as it is measured.
-
-    The master runs, and this process is a node.
-
-    Raises:
-        LiveError: a program failed, or something does not happen in time.
-        InduceError: a fault cannot be induced.
-    """
+    """Run a session; told: gets every row as soon as it is measured. The master runs, and this
+    process is a node. Raise LiveError if a program failed, or something does not happen in time,
+    InduceError if a fault cannot be induced."""
     model = _learn(plan, folder, processes)
     plan.system.start()
     monitor = MonitorListener()
@@ -155,8 +135,7 @@ def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], No
     config.write_text(yaml.safe_dump({'recorder': {'directory': str(folder / 'alarms')}}))
     processes.start('monitor', 'roslaunch', '--wait', 'self_awareness', 'monitor.launch',
                     f'model:={model}', f'config:={config}', 'respawn:=false')
-    await_condition('the monitor says something', lambda: bool(monitor.statuses),
-                    STARTED_WITHIN_S)
+    await_condition('the monitor says something', lambda: bool(monitor.statuses), STARTED_WITHIN_S)
     beside = [processes.start(f'beside_{number}', *command)
               for number, command in enumerate(plan.beside, 1)]
     # Where it stays loud, the rows tell it.
@@ -171,17 +150,15 @@ def run(plan: Plan, folder: Path, processes: Processes, told: Callable[[Row], No
 
 
 def _learn(plan: Plan, folder: Path, processes: Processes) -> Path:
-    """Record starts of the robot by record.launch, train and calibrate; return the model.
-
-    Recordings that the folder holds are used again.
-    """
-    ended = -APART_S  # the last one, by time.monotonic()
+    """Record starts of the robot by record.launch, but for recordings that the folder holds
+    already; train and calibrate; return the model."""
+    ended = -_APART_S  # the last one, by time.monotonic()
     for prefix, number, length_s in (
             (_TRAINING, plan.learning.starts, plan.learning.training_s),
             (_CALIBRATION, plan.learning.calibrations, plan.learning.calibration_s)):
         for name in (f'{prefix}_{turn}' for turn in range(1, number + 1)):
             if not _recorded(folder, name):
-                not_before = ended + APART_S if plan.what == BAGS else ended
+                not_before = ended + _APART_S if plan.what == BAGS else ended
                 ended = _record(plan, folder, name, length_s, not_before, processes)
     model = str(folder / _MODEL)
     for arguments in (['train', *_recorded(folder, _TRAINING)],
@@ -222,8 +199,7 @@ class Walk:
     """Takes step after step beside a monitor; promised: what the model says of itself, by the
     columns of rows of normal operation."""
 
-    def __init__(self, plan: Plan, monitor: MonitorListener,
-                 promised: Dict[str, Any]) -> None:
+    def __init__(self, plan: Plan, monitor: MonitorListener, promised: Dict[str, Any]) -> None:
         self._plan = plan
         self._monitor = monitor
         self._promised = promised
@@ -234,15 +210,16 @@ class Walk:
         """Induce a fault and undo it, or let normal operation pass; return what was measured."""
         note = self._monitor.reset_until_quiet() if step.reset else ''
         what = ' '.join((step.fault, *step.culprits))
-        with step.broken() as onset:
-            if step.is_normal and self._normal_since is not None:
-                onset = self._normal_since
+        with step.broken() as told:
+            since = self._normal_since if step.is_normal else told
+            onset = time.time() if since is None else since
             ahead_s, load = time.time() - time.monotonic(), os.getloadavg()[0]
+            back = None
             if step.returned is None:
                 wait(step.lasts_s, what)
             else:
                 say(what)
-            back = None if step.returned is None else step.returned()
+                back = step.returned()
             end = time.time()
             set_s = end - time.monotonic() - ahead_s
         row = Row(step.fault, ' '.join(source[1:] for source in step.culprits), round=step.round,
@@ -251,8 +228,8 @@ class Walk:
             row = replace(row, void=f"the machine's clock was set by {set_s:.2f} s")
         if step.is_normal:
             row = replace(row, alarms=0, **self._promised)
-            self._normal_since = None
-        else:
+        self._normal_since = None
+        if not step.is_normal and self._plan.quiet_within_s:
             row = self._over(row)
         becomes_true(lambda: self._monitor.statuses[-1].stamp > end, _STATUS_WITHIN_S)
         row = replace(measure(row, self._monitor.statuses, self._monitor.incidents),
@@ -263,9 +240,6 @@ class Walk:
 
     def _over(self, row: Row) -> Row:
         """Wait until a fault that was undone is over; note when it was."""
-        self._normal_since = None
-        if not self._plan.quiet_within_s:
-            return row
         recovered = time.time()
         # Where it does not clear in time, the row tells it.
         becomes_true(lambda: min(self._monitor.quiet_for(), time.time() - recovered)
@@ -298,53 +272,35 @@ def used(pid: int) -> Dict[str, Any]:
 class MonitorListener:
     """Keeps all that the monitor says; `rospy.init_node` has been called."""
 
+    # Without a lock: only threads of rospy append to the statuses, or replace the incidents.
     def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._statuses: List[Status] = []  # This and all below: guarded by _lock.
-        self._incidents: List[Incident] = []
-        self._heard_at = time.monotonic()
-        self._quiet_since = time.monotonic()
+        self.statuses: List[Status] = []  # all so far
+        self.incidents: List[Incident] = []  # the last ones, as they were opened
+        self._heard_at = self._quiet_since = time.monotonic()
         rospy.Subscriber(f'{MONITOR}/status', SelfAwareness, self._on_status, queue_size=1000)
         rospy.Subscriber(f'{MONITOR}/incidents', Incidents, self._on_incidents)
-
-    @property
-    def statuses(self) -> List[Status]:
-        """All so far."""
-        with self._lock:
-            return list(self._statuses)
-
-    @property
-    def incidents(self) -> List[Incident]:
-        """The last ones, in the order in which they were opened."""
-        with self._lock:
-            return list(self._incidents)
 
     def quiet_for(self) -> float:
         """Return for how long [s] there has been no alarm, and no settling, until now; raise
         LiveError if the monitor has gone silent."""
-        now = time.monotonic()
-        with self._lock:
-            if now - self._heard_at > _NO_STATUS_S and self._statuses:
-                raise LiveError(f'the monitor has said nothing for {_NO_STATUS_S:g} s')
-            return now - self._quiet_since if self._statuses else 0.0
+        if not self.statuses:
+            return 0.0
+        if time.monotonic() - self._heard_at > _NO_STATUS_S:
+            raise LiveError(f'the monitor has said nothing for {_NO_STATUS_S:g} s')
+        return time.monotonic() - self._quiet_since
 
     def reset_until_quiet(self) -> str:
-        """Reset the monitor until it is quiet; return a note if that took long or failed.
-
-        The alarm of one fault must not stand at the onset of the next one.
-
-        Raises:
-            LiveError: it does not answer.
-        """
+        """Reset the monitor until it is quiet; return a note if that took long or failed, raise
+        LiveError if it does not answer. The alarm of one fault must not stand at the onset of the
+        next one."""
         for resets in range(1, _MOST_RESETS + 1):
             try:
                 rospy.wait_for_service(f'{MONITOR}/reset', _SERVICE_WITHIN_S)
                 rospy.ServiceProxy(f'{MONITOR}/reset', Trigger)()
             except (rospy.ROSException, rospy.ServiceException) as error:
                 raise LiveError(f'{MONITOR}/reset: {error}') from error
-            with self._lock:  # what it said before does not count as quiet
-                self._quiet_since = time.monotonic()
-            if becomes_true(lambda: self.quiet_for() >= QUIET_S, _QUIET_WITHIN_S):
+            self._quiet_since = time.monotonic()  # what it said before does not count as quiet
+            if becomes_true(lambda: self.quiet_for() >= _QUIET_S, _QUIET_WITHIN_S):
                 return '' if resets == 1 else f'no alarm only after {resets} times ~reset'
         return f'the alarm stood after {_MOST_RESETS} times ~reset'
 
@@ -353,44 +309,31 @@ class MonitorListener:
         status = Status(message.header.stamp.to_sec(), message.level, message.settling,
                         tuple(suspects), message.message, message.component, message.kind,
                         message.alarm, message.events)
-        with self._lock:
-            self._statuses.append(status)
-            self._heard_at = time.monotonic()
-            if status.level >= ERROR or status.settling:
-                self._quiet_since = self._heard_at
+        self._heard_at = time.monotonic()
+        if status.level >= ERROR or status.settling:
+            self._quiet_since = self._heard_at
+        self.statuses.append(status)
 
     def _on_incidents(self, message: Incidents) -> None:
-        incidents = [Incident(each.id, each.last, each.opened.to_sec(), each.ended.to_sec())
-                     for each in message.incidents]
-        with self._lock:
-            self._incidents = incidents
+        self.incidents = [Incident(each.id, each.last, each.opened.to_sec(), each.ended.to_sec())
+                          for each in message.incidents]
 
 
-class TopicListener:
-    """Remembers when each node was last heard on each topic [s since 1970]."""
+@contextlib.contextmanager
+def listening(topics: Sequence[str]) -> Iterator[Callable[[str, str], float]]:
+    """Hand out what returns when a node was last heard on a topic [s since 1970]; 0: never."""
+    last: Dict[Tuple[str, str], float] = {}
 
-    def __init__(self, topics: Sequence[str]) -> None:
-        self._lock = threading.Lock()
-        self._last: Dict[Tuple[str, str], float] = {}  # Guarded by _lock.
-        self._subscribers = [rospy.Subscriber(topic, rospy.AnyMsg, self._on_message, topic,
-                                              queue_size=100) for topic in dict.fromkeys(topics)]
+    def on_message(message: rospy.AnyMsg, topic: str) -> None:
+        last[message._connection_header['callerid'], topic] = time.time()
 
-    def __enter__(self) -> TopicListener:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        for subscriber in self._subscribers:
+    subscribers = [rospy.Subscriber(topic, rospy.AnyMsg, on_message, topic, queue_size=100)
+                   for topic in dict.fromkeys(topics)]
+    try:
+        yield lambda source, topic: last.get((source, topic), 0.0)
+    finally:
+        for subscriber in subscribers:
             subscriber.unregister()
-
-    def last(self, source: str, topic: str) -> float:
-        """Return when a node was last heard on a topic; 0: never."""
-        with self._lock:
-            return self._last.get((source, topic), 0.0)
-
-    def _on_message(self, message: rospy.AnyMsg, topic: str) -> None:
-        source = message._connection_header['callerid']
-        with self._lock:
-            self._last[source, topic] = time.time()
 
 
 @contextlib.contextmanager
@@ -398,8 +341,8 @@ def heard(expected: Sequence[Tuple[str, str]]) -> Iterator[None]:
     """Wait at the end of a with statement until sources were heard on topics since its begin, or
     raise LiveError."""
     begin = time.time()
-    with TopicListener([topic for _, topic in expected]) as listener:
+    with listening([topic for _, topic in expected]) as last:
         yield
         for source, topic in expected:
-            await_condition(f'{source} publishes {topic}',
-                            lambda: listener.last(source, topic) > begin, STARTED_WITHIN_S)
+            await_condition(f'{source} publishes {topic}', lambda: last(source, topic) > begin,
+                            STARTED_WITHIN_S)

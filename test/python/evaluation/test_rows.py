@@ -66,7 +66,7 @@ def test_who_is_named_though_a_fault_does_not_reach_him() -> None:
     assert fault_row(SUBJECT, fault_at(70), alarms).bystanders is None
     found = fault_row(SUBJECT, replace(fault_at(70), involved=frozenset(('/a', '/c'))), alarms)
     assert found.bystanders == 1
-    assert Found.of([found, row(bystanders=0), row()]).bystanders == (1, 2)
+    assert Found([found, row(bystanders=0), row()]).bystanders == (1, 2)
 
 
 def test_a_fault() -> None:
@@ -170,9 +170,9 @@ def test_robots_that_differ_widen_the_interval() -> None:
 
 
 def test_figures_of_nothing_and_of_what_was_never_found() -> None:
-    nothing, none = Quiet.of([]), Found.of([])
+    nothing, none = Quiet([]), Found([])
     assert math.isnan(nothing.per_hour) and math.isnan(nothing.interval[0])
     assert none.records == 0 and math.isnan(none.share()) and math.isnan(none.median_s)
-    found = Found.of([row(stood_before=True), row(), row(latency_s=1.0)])
+    found = Found([row(stood_before=True), row(), row(latency_s=1.0)])
     assert (found.stood_before, found.within(0.9), found.within(1.0)) == (1, 0, 1)
     assert found.median_s == math.inf, 'what was not found took for ever'
