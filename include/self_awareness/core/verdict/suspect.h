@@ -72,7 +72,7 @@ namespace unit {
 constexpr char kSeconds[] = "s";          ///< of a silence, a delay, an age
 constexpr char kHertz[] = "Hz";           ///< of a rate
 constexpr char kEvents[] = "events";      ///< in the window
-constexpr char kRequests[] = "requests";  ///< in a row
+constexpr char kRequests[] = "requests";  ///< without an answer
 constexpr char kScore[] = "score";        ///< of the paper's detector
 }  // namespace unit
 

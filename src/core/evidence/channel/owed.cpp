@@ -20,8 +20,8 @@ constexpr double kLikelyMisses = 1;
 class ExpectedAnswers : public Expectation {
  public:
   struct Answer {
-    double usual = 0;   // a usual one takes no longer [ns]
-    double missed = 0;  // what a request without one adds to the sum [nat]; 0: in seconds
+    double usual = 0;  // a usual one takes no longer [ns]
+    double step = 0;   // what a request without one adds to the sum [nat]; 0: in seconds
   };
 
   ExpectedAnswers(const Model& model, std::vector<std::size_t> tracks)
@@ -52,22 +52,22 @@ class ExpectedAnswers : public Expectation {
   double leastLimit(std::size_t track) const override {
     const Tuning& tuning = model_.tuning();
     // What usual answers take is normal, also where no request before them counts.
-    return answer(track).missed > 0
+    return answer(track).step > 0
                ? tuning.least_sum
                : std::max(tuning.least_lateness,
                           tuning.margin_of_waiting * 1e-9 * answer(track).usual);
   }
   double timeUntil(std::size_t track, double evidence) const override {
-    const double missed = answer(track).missed;
+    const double step = answer(track).step;
     const double gap = model_.meanGap(model_.tracks()[track].from);
-    return missed > 0 ? (std::floor(evidence / missed) + 1) * gap : evidence * 1e9;
+    return step > 0 ? (std::floor(evidence / step) + 1) * gap : evidence * 1e9;
   }
   double limit(std::size_t track, double largest, double most) const override {
     const EventId to = model_.tracks()[track].to;
     const bool says_more =
         timeUntil(track, largest) <
         model_.tuning().owed_of_silence * static_cast<double>(model_.longestSilence(to));
-    return says_more && (answer(track).missed == 0 || largest < kMostSum)
+    return says_more && (answer(track).step == 0 || largest < kMostSum)
                ? most
                : std::numeric_limits<double>::quiet_NaN();
   }
@@ -150,9 +150,7 @@ class OwedState : public ChannelState {
     std::uint32_t requests = 0;  // since the last answer
     std::int64_t since = 0;      // stamp of the first of them [ns], if there is one
     std::int64_t last = 0;       // stamp of the last of them
-    Sum sum;
-    std::uint32_t missed = 0;  // requests without an answer, since the sum was 0
-    std::uint32_t asked = 0;   // requests since then
+    CountedSum sum;              // of requests; unusual: without an answer
   };
   /// Numbers of answers: that an event type asks for, and that it is.
   struct OfType {
@@ -169,7 +167,6 @@ class OwedState : public ChannelState {
   }
   static void answer(Answer& answer, std::int64_t stamp);
   static void ask(Answer& answer, std::int64_t stamp, const Heard& heard);
-  static void add(Answer& answer, bool missed, double step, std::int64_t stamp);
 
   const Model& model_;
   std::vector<Answer> owed_;
@@ -191,22 +188,13 @@ OwedState::OwedState(const ExpectedAnswers& expected)
     answer.track = track;
     answer.to = to;
     answer.usual = static_cast<std::int64_t>(expected.answer(track).usual);
-    answer.step = expected.answer(track).missed;
+    answer.step = expected.answer(track).step;
   }
-}
-
-void OwedState::add(Answer& answer, bool missed, double step, std::int64_t stamp) {
-  if (answer.sum.add(step, stamp)) {
-    answer.missed = 0;
-    answer.asked = 0;
-  }
-  answer.missed += missed ? 1 : 0;
-  ++answer.asked;
 }
 
 void OwedState::answer(Answer& answer, std::int64_t stamp) {
   if (answer.step > 0 && answer.requests > 0) {
-    add(answer, false, -kStepOfUsual, stamp);
+    answer.sum.count(false, answer.step, stamp);
   } else if (answer.step > 0) {
     answer.sum.add(-answer.step, stamp);  // the one before was only late
   }
@@ -218,7 +206,7 @@ void OwedState::ask(Answer& answer, std::int64_t stamp, const Heard& heard) {
   if (answer.step > 0) {
     // Who was never heard is NeverHeard's matter.
     if (answer.requests > 0 && stamp - answer.last >= answer.usual && answered) {
-      add(answer, true, answer.step, answer.last);
+      answer.sum.count(true, answer.step, answer.last);
     }
   } else if (answered && stamp - *answered < answer.usual) {
     return;  // two that answer to the same come in any order: it may have come already
@@ -249,10 +237,10 @@ void OwedState::explain(std::size_t track, const Heard& heard, const RecentEvent
     std::snprintf(text, sizeof text, "has not come for %.2f s after ", reason.value);
   } else {
     reason.unit = unit::kRequests;
-    const bool at_all = answer.missed < answer.asked;
-    reason.value = at_all ? answer.missed : answer.requests;
+    const bool at_all = answer.sum.unusual < answer.sum.events;
+    reason.value = at_all ? answer.sum.unusual : answer.requests;
     at_all ? std::snprintf(text, sizeof text, "has not come after %u of the last %u ",
-                           answer.missed, answer.asked)
+                           answer.sum.unusual, answer.sum.events)
            : std::snprintf(text, sizeof text, "has not come after the last %u ", answer.requests);
   }
   reason.words = text + reason.after;

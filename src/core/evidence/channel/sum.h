@@ -54,4 +54,20 @@ struct Sum {
   void capAt(double limit, double most_of_limit) { cap = capOfSum(limit, most_of_limit, cap); }
 };
 
+/// A sum of events that are unusual or not, and how many there were since it was 0.
+struct CountedSum : Sum {
+  std::uint32_t unusual = 0;
+  std::uint32_t events = 0;  ///< of either kind
+
+  /// @param more what an unusual one adds [nat]
+  void count(bool is_unusual, double more, std::int64_t stamp) {
+    if (add(is_unusual ? more : -kStepOfUsual, stamp)) {
+      unusual = 0;
+      events = 0;
+    }
+    unusual += is_unusual ? 1 : 0;
+    ++events;
+  }
+};
+
 }  // namespace self_awareness::core::evidence

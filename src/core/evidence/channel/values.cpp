@@ -126,13 +126,8 @@ class SharesState : public ChannelState {
       const ExpectedShares::Usual& usual = expected_.usual(number);
       OfValue& value = values_[number];
       const bool has_it = expected_.model().tracks()[expected_.tracks()[number]].to == arrival.id;
-      if (value.sum.add(has_it ? usual.more : -kStepOfUsual, arrival.stamp)) {
-        value.with = 0;
-        value.messages = 0;
-      }
+      value.sum.count(has_it, usual.more, arrival.stamp);
       value.last = arrival.stamp;
-      value.with += has_it ? 1 : 0;
-      ++value.messages;
     }
   }
   void forget(EventId id) override {
@@ -168,22 +163,21 @@ class SharesState : public ChannelState {
     Reason& reason = suspect.reason;
     reason.kind = Kind::kFast;
     reason.unit = "share";
-    reason.value = value.messages > 0 ? static_cast<double>(value.with) / value.messages : 0;
+    reason.value =
+        value.sum.events > 0 ? static_cast<double>(value.sum.unusual) / value.sum.events : 0;
     reason.usual = usual;
     reason.usual_shortest = 0;
     reason.usual_longest = usual;
     char text[100];
     std::snprintf(text, sizeof text, "%u of the last %u messages, usually %.1f %% at most",
-                  value.with, value.messages, 100 * usual);
+                  value.sum.unusual, value.sum.events, 100 * usual);
     reason.words = text;
   }
 
  private:
   struct OfValue {
-    Sum sum;
-    std::int64_t last = 0;       // stamp of the last message [ns]
-    std::uint32_t with = 0;      // the value, since the sum was 0
-    std::uint32_t messages = 0;  // of all values, since then
+    CountedSum sum;         // of messages; unusual: with the value
+    std::int64_t last = 0;  // stamp of the last message [ns]
   };
 
   const ExpectedShares& expected_;
