@@ -30,6 +30,23 @@ ROOMS: Dict[str, Set[str]] = {
     'recorder': {'core', 'ros', 'node'},
     'python': {'core', 'ros'},
 }
+# Numbers of core/evidence beside its tuning. None of them is one of the method: what training
+# counts, and with it the format of models, is fixed; the promise is a formula; the rest is how
+# something is computed, or put in words.
+BESIDE_TUNING: Dict[str, Set[str]] = {
+    'what is counted': {'kAhead', 'kAttributesFrom', 'kDelayBins', 'kFirstEdge', 'kLongestGaps',
+                        'kPriorCount', 'kRateSpan', 'kSpan', 'kSpanOfAge'},
+    'what is promised': {'kBudget', 'kHoursOfRobots', 'kQuantile', 'kQuietest', 'kRaised'},
+    'what info says': {'kFalseAlarms', 'kFarLater', 'kFoundLate', 'kGoesOver', 'kLongestPause'},
+    'multiples of kRateSpan': {'kHold', 'kKept', 'kLongEnough', 'kOneCause', 'kRestart'},
+    'bins': {'kBias', 'kClasses', 'kExponents', 'kFirstExponent', 'kLast', 'kLateGap',
+             'kMostBins', 'kSlightly', 'kClassBack'},
+    'bounds of a computation': {'kMost', 'kMostDoublings', 'kMostParts', 'kMostStarts',
+                                'kMostSum', 'kMostTypesOfAllPairs', 'kTailPoints', 'kTogether'},
+    'beyond all values': {'kEnough', 'kForEver', 'kLeastTime', 'kNotSeen', 'kUnused'},
+    'words and scores': {'kDay', 'kMostNamed', 'kMostTopics', 'kStillBusy', 'kThreshold'},
+}
+NUMBER = re.compile(r'constexpr [\w:]+ (k\w+) = ([^;]*\d[^;]*);')
 CHANNEL = 'src/core/evidence/channel'
 LIST_OF_CHANNELS = 'channels_of_the_method.cpp'
 INCLUDE = re.compile(r'^#include ["<]([^">]+)[">]', re.MULTILINE)
@@ -74,6 +91,13 @@ def test_the_evidence_has_no_other_rooms() -> None:
     for folder in ('include/self_awareness/core/evidence', 'src/core/evidence'):
         assert {path.name for path in (ROOT / folder).iterdir() if path.is_dir()
                 } <= {room.rpartition('/')[2] for room in ROOMS}
+
+
+def test_no_number_of_the_method_lies_beside_its_tuning() -> None:
+    found = {name for path in _sources('src/core/evidence', 'include/self_awareness/core/evidence')
+             for name, value in NUMBER.findall(path.read_text(encoding='utf-8'))
+             if 'numeric_limits' not in value}
+    assert found == set.union(*BESIDE_TUNING.values()), 'put it into tuning.h'
 
 
 def test_no_channel_knows_another_one() -> None:

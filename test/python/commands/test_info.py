@@ -95,7 +95,7 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, monkey
 
 
 def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path) -> None:
-    output = train_tuned(long_bags[:1], tmp_path / 'm', least_effect=0.0025, predecessors=1)
+    output = train_tuned(long_bags[:1], tmp_path / 'm', least_effect=0.0025, deadlines=1)
     assert calibrate.main(['--model', output, '--normal', long_bags[1], '-o', output]) == 0
     evidence = as_json(output)['evidence']
     assert evidence['calibration']['method'] == 'held-out'
@@ -103,7 +103,7 @@ def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path) -> N
     lines = printed_by(info, [output, '--tuning']).splitlines()
     assert [line.split()[0] for line in lines] == [each.name for each in Tuning.numbers()]
     assert [line.split()[:2] for line in lines if '(default: ' in line] == [
-        ['predecessors', '1'], ['least_effect', '0.0025']]
+        ['deadlines', '1'], ['least_effect', '0.0025']]
 
 
 def test_people_read_the_same(model_file: str, evidence_model: str) -> None:

@@ -11,7 +11,7 @@ from reference_evidence import (BETWEEN_STALLS, LABELS, LONGEST_STALL_OF_TRAININ
 ARMING_EVENTS = 30
 MOST_FAILURES = 10
 GONE_GAPS = 5
-LATE = 1.2  # mean gaps
+LATE = 2 ** 0.25  # mean gaps: a bin
 MOST_BEHIND = 2.0 * SECOND
 MOST_EVIDENCE = 200.0
 MOST_OF_LIMIT = 1.5

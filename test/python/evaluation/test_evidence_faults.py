@@ -1,6 +1,8 @@
 """Which faults of the simulated robot the detectors see: `evidence` all of them, `paper` few."""
 from __future__ import annotations
 
+import math
+from statistics import median
 from typing import Optional, Tuple
 
 import numpy as np
@@ -16,6 +18,7 @@ from self_awareness_evaluation.systems import Evidence, Paper
 from self_awareness_follow_me.scenario import load_scenario
 
 SEED = 1
+SEEDS = (SEED, 2, 3)  # of records that the same system judges
 CALIBRATION_S = 300.0
 
 SEES, LATE, BLIND, VARIES = 'sees', 'late', 'blind', 'varies'
@@ -62,14 +65,16 @@ def latency(judged: Judged, onset: int) -> Optional[float]:
 ])
 def test_evidence_raises_the_alarm(systems: Systems, kind: str, within_s: float,
                                    paper: str) -> None:
-    record = fault_record(load_scenario(), SEED, kind)
     evidence, paper_system = systems
-    by_evidence = evidence.judge(record.recording)
-    by_paper = paper_system.judge(record.recording)
-    assert all(alarm.start > record.onset for alarm in by_evidence.alarms)
-    found = latency(by_evidence, record.onset)
-    assert found is not None and found <= within_s
-    of_paper = latency(by_paper, record.onset)
+    found = []
+    for seed in SEEDS:
+        record = fault_record(load_scenario(), seed, kind)
+        by_evidence = evidence.judge(record.recording)
+        assert all(alarm.start > record.onset for alarm in by_evidence.alarms)
+        found.append(latency(by_evidence, record.onset) or math.inf)
+    assert median(found) <= within_s and max(found) < math.inf
+    record = fault_record(load_scenario(), SEED, kind)
+    of_paper = latency(paper_system.judge(record.recording), record.onset)
     if paper == SEES:
         assert of_paper is not None
     elif paper == LATE:

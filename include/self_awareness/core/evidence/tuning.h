@@ -16,7 +16,7 @@ namespace self_awareness::core::evidence {
 struct Tuning {
   // What is known well enough to be judged.
   double fewest_gaps = 8;
-  double predecessors = 2;
+  double fewest_starts = 3;
   double deadlines = 3;
 
   // Which relations have a reason.
@@ -24,13 +24,13 @@ struct Tuning {
   double least_gain_left = 0.7;
   double chance = 0.1;
   double least_chance_misses = 0.2;
-  double most_misses = 0.5;
-  double rare_misses = 0.02;
+  double most_unusual = 0.5;
   double least_of_longest = 0.1;
 
   // The evidence of gaps and delays.
   double least_told = 100;
   double least_sum = 9;
+  double hours_of_chance = 1000;
   double usual = 0.9;
   double least_effect = 0.005;
   double most_of_limit = 1.5;
@@ -59,23 +59,23 @@ struct Tuning {
   double regular = 1.5;
   double fast = 2;
   double pauses = 10;
-  double prior_pauses = 1.5;
+  double talking = 0.75;
+  double usual_spread = 0.6;
   double least_requests = 3;
   double owed_of_silence = 0.9;
   double most_mean_gaps = 3;
 
   // From evidence to an alarm, and to who is to blame.
-  double rare_silence = 0.01;
+  double rare = 0.02;
   double near_limit = 0.75;
   double least_share = 0.3;
 
   // The attributes of messages.
   double least_lateness = 0.5;
-  double usual_losses = 0.003;
-  double least_losses = 1.5;
   double least_size = 1;
   double least_repeat = 2;
   double changing_time = 7200;
+  double most_values = 16;
 
   /// Channels that are switched off, by their names (channelNames()).
   std::set<std::string> without;

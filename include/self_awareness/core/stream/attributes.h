@@ -24,6 +24,8 @@ struct Attributes {
   static constexpr std::uint8_t kNoAge = 0;          ///< age of a message without a header
   static constexpr std::uint8_t kZeroStamp = 1;      ///< age of a message with the stamp 0
   static constexpr std::uint8_t kYoungest = 2;       ///< the first class of a true age
+  static constexpr double kAgeStep = 0.0906;         ///< width of a class of ages, as a share
+  static constexpr double kAheadStep = 0.1893;       ///< the same of stamps in the future
   static constexpr std::uint8_t kNoSize = 0;         ///< nothing is known of the message
   static constexpr std::uint8_t kLargestSize = 255;  ///< the last class
 

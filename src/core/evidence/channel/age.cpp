@@ -10,15 +10,11 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// This share of the messages may lack a stamp, and of those whose stamps are as old as they are,
-// as many may be older than that once more.
-constexpr double kMostRises = 0.01;
-constexpr double kUsualRise = 1;  // [s]
-// Two classes of ages, and of stamps in the future: to tell them apart takes that much.
-constexpr double kTwoClasses = 0.19;
-constexpr double kTwoClassesAhead = 0.42;
-// A stamp that is missing is as bad as one that is so old [s].
-constexpr double kWithoutStamp = 60;
+/// What tells an age from those two classes below [s].
+double twoClasses(double age) {
+  const double step = 1 + (age < 0 ? Attributes::kAheadStep : Attributes::kAgeStep);
+  return (step * step - 1) * std::abs(age);
+}
 
 struct AgeOfMessages {
   struct Usual {
@@ -39,7 +35,7 @@ struct AgeOfMessages {
       last = level.add(arrival.stamp, age, {usual.shortest, usual.longest}, most);
     } else {
       age = Reason::kNone;
-      last = kWithoutStamp;
+      last = toSeconds(AgeLevel::kSpan);  // a stamp that is missing is as bad
     }
   }
   double evidence() const { return std::min(last, before); }
@@ -74,11 +70,14 @@ std::vector<Track> Age::watch(const Choice& choice) const {
   return tracksOfMessages(*this, choice, [&](EventId id) {
     const AttributeCounts& counts = choice.both.type(id).attributes;
     const auto counted = static_cast<double>(counts.counted());
+    const Tuning& tuning = choice.tuning;
+    // Few may lack a stamp, and of the others, few may be older than they are by so much.
+    const double usual = tuning.margin * tuning.least_lateness;
     const std::uint64_t large =
-        total({counts.rises.upper_bound(ageClass(toNanoseconds(kUsualRise))), counts.rises.end()});
+        total({counts.rises.upper_bound(ageClass(toNanoseconds(usual))), counts.rises.end()});
     const auto rises = static_cast<double>(total(counts.rises));
-    return counted - rises <= kMostRises * counted &&
-           static_cast<double>(large) <= kMostRises * rises;
+    return counted - rises <= tuning.rare * counted &&
+           static_cast<double>(large) <= tuning.rare * rises;
   });
 }
 
@@ -92,9 +91,7 @@ std::unique_ptr<const Expectation> Age::expect(const Model& model, const Halves&
         usual.shortest = ageOf(quantile(ages, kUsualFrom));
         usual.middle = ageOf(quantile(ages, 0.5));
         usual.longest = ageOf(quantile(ages, kUsualTo));
-        usual.least_limit =
-            std::max(model.tuning().least_lateness,
-                     (usual.middle < 0 ? kTwoClassesAhead : kTwoClasses) * std::abs(usual.middle));
+        usual.least_limit = std::max(model.tuning().least_lateness, twoClasses(usual.middle));
         return usual;
       });
 }

@@ -15,11 +15,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Fewer delays do not say what is usual.
-constexpr std::size_t kFewestBefore = 10;
-// If fewer of the unusual delays lie on one side of the usual one, they are scattered around it.
-constexpr double kOneSided = 0.8;
-
 double lowerEdge(std::size_t bin) {
   return static_cast<double>(log_bins::lowerEdge(bin));
 }
@@ -62,12 +57,12 @@ std::vector<double> lengths(SeenDelays::const_iterator begin, SeenDelays::const_
   return lengths;
 }
 
-/// How far the delays are from the usual one, if they lie on both sides of it.
-std::optional<double> scatterOf(std::vector<double> delays, double usual) {
+/// How far the delays are from the usual one, unless nearly all lie on one side of it.
+std::optional<double> scatterOf(std::vector<double> delays, double usual, const Tuning& tuning) {
   const auto number = static_cast<double>(delays.size());
   const auto longer = static_cast<double>(std::count_if(
       delays.begin(), delays.end(), [usual](double delay) { return delay > usual; }));
-  if (std::max(longer, number - longer) >= kOneSided * number) {
+  if (std::max(longer, number - longer) >= tuning.usual * number) {
     return std::nullopt;
   }
   for (double& delay : delays) {
@@ -136,15 +131,16 @@ DelaySteps::DelaySteps(const Model& model, EventId from, EventId to)
 }
 
 void describeDelays(const std::vector<SeenDelay>& seen, double cap, double usual, std::int64_t now,
-                    Reason& reason) {
+                    const Tuning& tuning, Reason& reason) {
   reason.unit = unit::kSeconds;
   std::optional<double> scatter;
   if (!seen.empty()) {
     const auto first = sinceZero(seen, cap);
     const std::vector<double> before = lengths(seen.begin(), first, false);
     const std::vector<double> unusual = lengths(first, seen.end(), true);
-    usual = before.size() < kFewestBefore ? usual : median(before);
-    scatter = scatterOf(unusual, usual);
+    const bool is_known = static_cast<double>(before.size()) >= tuning.fewest_gaps;
+    usual = is_known ? median(before) : usual;
+    scatter = scatterOf(unusual, usual, tuning);
     reason.value = 1e-9 * median(unusual.empty() ? lengths(first, seen.end(), false) : unusual);
     reason.usual = 1e-9 * usual;
     reason.times = unusual.size();

@@ -53,6 +53,6 @@ struct SeenDelay {
 /// @param now [ns]
 /// @param reason what they are after is known, and what is usual of them
 void describeDelays(const std::vector<SeenDelay>& seen, double cap, double usual, std::int64_t now,
-                    Reason& reason);
+                    const Tuning& tuning, Reason& reason);
 
 }  // namespace self_awareness::core::evidence

@@ -5,26 +5,19 @@
 #include <cstdio>
 
 #include "core/evidence/channel/messages.h"
+#include "core/evidence/channel/sum.h"
 #include "core/evidence/count/repeats.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-// A GPS without a fix, and a robot that stands, repeat themselves for as long as they like. Fewer
-// starts do not say that they never do.
-constexpr std::size_t kFewestStarts = 3;
-// Who repeats itself more often, as a share of its messages, may do so for ever.
-constexpr double kMostRepeats = 0.5;
-// Fewer repetitions, in mean gaps, may be a message that was sent twice.
-constexpr double kFewestGapsFrozen = 2.5;
-// So many repetitions in a row come by chance after so small a share of the messages.
-constexpr double kRepeatedByChance = 1e-7;
-
-/// Mean gaps with the same content that are more than chance.
-double gapsBeyondChance(const AttributeCounts& counts) {
+/// For how long the same content is more than chance [s], and more than a message sent twice.
+double timeBeyondChance(const AttributeCounts& counts, double mean_gap, const Tuning& tuning) {
   const double repeats =
       (static_cast<double>(counts.repeats) + 1) / (static_cast<double>(counts.counted()) + 2);
-  return std::max(kFewestGapsFrozen, std::log(kRepeatedByChance) / std::log(repeats));
+  const double in_a_row =
+      beyondChance(kNanosecondsPerHour / mean_gap, tuning) / -std::log(repeats);
+  return std::max(tuning.most_mean_gaps, in_a_row) * mean_gap / kNanosecondsPerSecond;
 }
 
 /// For how long an event type was heard, and in how many starts.
@@ -84,15 +77,18 @@ std::string Frozen::whyNot(const Statistics& counts, EventId id, const Tuning& t
   if (counts.vocabulary().tellsMode(id) || content.counted() == 0) {
     return text;  // nothing of its messages is known
   }
-  if (longest > gapsBeyondChance(content) * 1e-9 * counts.type(id).meanGap()) {
+  if (longest > timeBeyondChance(content, counts.type(id).meanGap(), tuning)) {
     std::snprintf(text, sizeof text, "it repeated for %.0f s in training", longest);
   } else if (static_cast<double>(content.repeats) >
-             kMostRepeats * static_cast<double>(content.counted())) {
-    return "it repeats itself";
-  } else if (toSeconds(heard.time) < tuning.changing_time || heard.starts < kFewestStarts) {
-    std::snprintf(text, sizeof text, "%.1f h in %zu start%s, %.0f h in %zu are needed",
+             tuning.most_unusual * static_cast<double>(content.counted())) {
+    return "it repeats itself";  // for as long as it likes
+  } else if (toSeconds(heard.time) < tuning.changing_time ||
+             static_cast<double>(heard.starts) < tuning.fewest_starts) {
+    // A GPS without a fix, and a robot that stands, repeat themselves for as long as they like.
+    // Fewer starts do not say that they never do.
+    std::snprintf(text, sizeof text, "%.1f h in %zu start%s, %.0f h in %.0f are needed",
                   toSeconds(heard.time) / 3600, heard.starts, heard.starts == 1 ? "" : "s",
-                  tuning.changing_time / 3600, kFewestStarts);
+                  tuning.changing_time / 3600, tuning.fewest_starts);
   }
   return text;
 }
@@ -112,7 +108,7 @@ std::unique_ptr<const Expectation> Frozen::expect(const Model& model, const Halv
         usual.longest = toSeconds(counts.longest_repeat);
         usual.mean_gap = static_cast<std::int64_t>(model.meanGap(id));
         usual.least_limit =
-            std::max({tuning.least_repeat, gapsBeyondChance(counts) * 1e-9 * model.meanGap(id),
+            std::max({tuning.least_repeat, timeBeyondChance(counts, model.meanGap(id), tuning),
                       tuning.margin_of_silence * usual.longest});
         return usual;
       });

@@ -77,7 +77,7 @@ double Model::logSurvival(EventId id, std::int64_t age) const {
 }
 
 bool Model::isRare(EventId id, std::int64_t silence) const {
-  return logSurvival(id, silence) < std::log(tuning().rare_silence);
+  return logSurvival(id, silence) < std::log(tuning().rare);
 }
 
 std::int64_t Model::longestSilence() const {

@@ -12,11 +12,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// All but as many answers as this leaves out on both sides take no longer than usual.
-constexpr double kUsualAnswers = 0.9;
-// A share of misses may be as large as so many standard deviations tell.
-constexpr double kLikelyMisses = 1;
-
 class ExpectedAnswers : public Expectation {
  public:
   struct Answer {
@@ -33,17 +28,17 @@ class ExpectedAnswers : public Expectation {
       missing += areSeries(track) ? 0 : requests.missed;
       asked += areSeries(track) ? 0 : requests.all;
     }
-    const double rare = model_.tuning().rare_misses;
+    const double rare = model_.tuning().rare;
     const bool fail = missing / asked > rare;  // those of this robot, now and then
     for (const std::size_t track : this->tracks()) {
       const Track& owed = model_.tracks()[track];
       const Requests requests = requestsOf(track);
-      const double share = likelyShare(requests.missed + 0.5, requests.all + 1, kLikelyMisses);
+      const double share = likelyShare(requests.missed + 0.5, requests.all + 1);
       const std::uint64_t gaps = model_.statistics().type(owed.from).gaps;
       const bool counts =
           fail || areSeries(track) ||
           missRate(gaps, model_.statistics().answers(owed.from, owed.to)) > tooSoon(owed) + rare;
-      answers_.push_back({model_.usualDelay(owed.from, owed.to, (1 + kUsualAnswers) / 2),
+      answers_.push_back({model_.usualDelay(owed.from, owed.to, (1 + model_.tuning().usual) / 2),
                           counts ? stepOfSum(1 / share, model_.tuning().least_sum) : 0});
     }
   }
@@ -94,7 +89,7 @@ class ExpectedAnswers : public Expectation {
   double tooSoon(const Track& owed) const {
     const DelayHistogram& gaps = model_.statistics().delays(owed.from, owed.from);
     const std::size_t latest =
-        model_.statistics().delays(owed.from, owed.to).middle(kUsualAnswers).last;
+        model_.statistics().delays(owed.from, owed.to).middle(model_.tuning().usual).last;
     double shorter = 0;
     for (std::size_t bin = 0; bin <= latest; ++bin) {
       shorter += gaps[bin];
@@ -258,7 +253,7 @@ std::vector<Track> Owed::watch(const Choice& choice) const {
       const double misses = missRate(choice.both.type(from).gaps, answers);
       if (from != to && !choice.isMode(from) && !choice.isMode(to) &&
           static_cast<double>(answers) >= choice.tuning.fewest_gaps &&
-          misses <= choice.tuning.most_misses && choice.relations.owed(from, to).watched) {
+          misses <= choice.tuning.most_unusual && choice.relations.owed(from, to).watched) {
         best.emplace_back(choice.both.delays(from, to).middle(0).last, from);
       }
     }

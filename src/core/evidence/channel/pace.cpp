@@ -14,18 +14,16 @@ namespace {
 
 constexpr std::uint32_t kNoNumber = std::numeric_limits<std::uint32_t>::max();
 // Mean gaps: a longer one, by a bin, makes its type late.
-constexpr double kLateGap = 1.2;
+constexpr double kLateGap = log_bins::kInOctave[1];
 // More than that is not made up for [ns].
 constexpr auto kMostBehind = static_cast<double>(kRateSpan);
 // Messages of one stamp took some time, too [s].
 constexpr double kLeastTime = 1e-3;
 // Other paces, in bins of a quarter of an octave: 0.7 of the rate or a half; and 1.4, 2 or more,
 // up to 4096 times the rate. What is still slower is a silence again and again.
-constexpr std::ptrdiff_t kSlightly = 2;
-constexpr std::ptrdiff_t kTwice = 4;
-constexpr std::ptrdiff_t kMostBins = 48;
-// Who comes as often as usual since the sum began, and has other gaps, has no other pace.
-constexpr double kSameRate = 0.1;
+constexpr std::ptrdiff_t kTwice = log_bins::kInOctave.size();
+constexpr std::ptrdiff_t kSlightly = kTwice / 2;
+constexpr std::ptrdiff_t kMostBins = log_bins::kBins - 2;
 
 /// The same gaps, longer by so many bins; what would leave the bins stays in the outermost one.
 ByBin longer(const ByBin& shares, std::ptrdiff_t bins) {
@@ -93,8 +91,9 @@ class ExpectedPaces : public Expectation {
   /// Whether so many gaps in such a time [ns] are fewer, or more, than usual.
   bool isOtherRate(std::size_t number, std::uint32_t gaps, double time) const {
     const double usual = time / usual_gaps_[number];
-    return side_ == Pace::Side::kSlower ? gaps < (1 - kSameRate) * usual
-                                        : gaps > (1 + kSameRate) * usual;
+    const double most_apart = 1 - model_.tuning().usual;
+    return side_ == Pace::Side::kSlower ? gaps < (1 - most_apart) * usual
+                                        : gaps > (1 + most_apart) * usual;
   }
   /// Says that so many gaps took so long [s].
   void describe(EventId id, std::uint32_t gaps, double time, Reason& reason) const;

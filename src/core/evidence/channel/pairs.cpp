@@ -241,29 +241,27 @@ void PairsState::explain(std::size_t track, const Heard& heard, const RecentEven
   suspect.reason.usual_shortest = 1e-9 * model.usualDelay(from, to, 0.05);
   suspect.reason.usual_longest = 1e-9 * model.usualDelay(from, to, 0.95);
   describeDelays(seen, pair.sum.cap, model.usualDelay(from, to, 0.5), heard.windowEnd(),
-                 suspect.reason);
+                 model.tuning(), suspect.reason);
 }
 
 }  // namespace
 
-// Of every event type the predecessors that say most of it, those with a reason first, then those
-// that the graph says reach it. The others fill the places that are left: recordings of the
-// calibration may give them a reason.
+// Of every event type the predecessor that says most of it, one with a reason first, then one that
+// the graph says reaches it: recordings of the calibration may give it a reason.
 std::vector<Track> Pairs::watch(const Choice& choice) const {
   std::vector<Track> tracks;
   for (EventId to = 0; to < choice.both.size(); ++to) {
-    std::vector<std::tuple<bool, bool, double, EventId>> best;
+    std::optional<std::tuple<bool, bool, double, EventId>> best;
     for (EventId from = 0; from < choice.both.size(); ++from) {
       if (from != to && choice.areEnough(from, to) && choice.saysEnough(from, to)) {
         const Relation reason = choice.relations.delays(from, to);
         const bool is_known = choice.relations.knowGraph() && reason.reaches;
-        best.emplace_back(!reason.watched, !is_known, -choice.gains(from, to), from);
+        const std::tuple each{!reason.watched, !is_known, -choice.gains(from, to), from};
+        best = std::min(best.value_or(each), each);
       }
     }
-    std::sort(best.begin(), best.end());
-    best.resize(std::min(best.size(), static_cast<std::size_t>(choice.tuning.predecessors)));
-    for (const auto& [waits, is_unknown, gain, from] : best) {
-      tracks.push_back({this, to, from});
+    if (best) {
+      tracks.push_back({this, to, std::get<EventId>(*best)});
     }
   }
   return tracks;

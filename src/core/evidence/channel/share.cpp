@@ -4,12 +4,10 @@
 
 namespace self_awareness::core::evidence {
 
-double likelyShare(double seen, double all, double deviations) {
+double likelyShare(double seen, double all) {
   const double share = seen / all;
-  const double spread = deviations * deviations / all;
-  return (share + spread / 2 +
-          deviations * std::sqrt(share * (1 - share) / all + spread / (4 * all))) /
-         (1 + spread);
+  const double one = 1 / all;
+  return (share + one / 2 + std::sqrt((share * (1 - share) + one / 4) * one)) / (1 + one);
 }
 
 }  // namespace self_awareness::core::evidence

@@ -10,19 +10,16 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr double kClasses = 8;      // of an octave
-constexpr double kMostBetween = 1;  // halves of the training whose sizes differ by more [octaves]
-constexpr double kShareOfRange = 0.5;  // sizes that vary by an octave may do so by this much more
-constexpr double kRare = 0.001;        // share of sizes in training that say nothing
-constexpr double kUnused = 1e3;        // beyond all sizes [octaves]
+constexpr double kClasses = 8;   // of an octave
+constexpr double kUnused = 1e3;  // beyond all sizes [octaves]
 
 struct Range {
   double smallest = 0;  // [octaves]
   double largest = 0;
 };
 
-Range rangeOf(const ClassCounts& sizes) {
-  return {quantile(sizes, kRare) / kClasses, quantile(sizes, 1 - kRare) / kClasses};
+Range rangeOf(const ClassCounts& sizes, double rare) {
+  return {quantile(sizes, rare) / kClasses, quantile(sizes, 1 - rare) / kClasses};
 }
 
 struct SizeOfMessages {
@@ -74,20 +71,21 @@ std::unique_ptr<const Expectation> Size::expect(const Model& model, const Halves
                                                 std::vector<std::size_t> tracks) const {
   return std::make_unique<ExpectedMessages<SizeOfMessages>>(
       model, std::move(tracks), [&](EventId id) {
+        const Tuning& tuning = model.tuning();
         SizeOfMessages::Usual usual;
-        usual.range = rangeOf(model.learned().type(id).attributes.sizes);
+        usual.range = rangeOf(model.learned().type(id).attributes.sizes, tuning.rare);
         const ClassCounts& first = halves[0].type(id).attributes.sizes;
         const ClassCounts& second = halves[1].type(id).attributes.sizes;
-        const Range one = rangeOf(first);
-        const Range other = rangeOf(second);
+        const Range one = rangeOf(first, tuning.rare);
+        const Range other = rangeOf(second, tuning.rare);
         const bool both = !first.empty() && !second.empty();
-        const bool small = both && std::abs(one.smallest - other.smallest) <= kMostBetween;
-        const bool large = both && std::abs(one.largest - other.largest) <= kMostBetween;
+        const bool small = both && std::abs(one.smallest - other.smallest) <= tuning.least_size;
+        const bool large = both && std::abs(one.largest - other.largest) <= tuning.least_size;
         usual.is_supported = small || large;
         usual.smallest = small ? usual.range.smallest : -kUnused;
         usual.largest = large ? usual.range.largest : kUnused;
-        usual.least_limit = std::max(model.tuning().least_size,
-                                     kShareOfRange * (usual.range.largest - usual.range.smallest));
+        usual.least_limit =
+            std::max(tuning.least_size, usual.range.largest - usual.range.smallest);
         return usual;
       });
 }

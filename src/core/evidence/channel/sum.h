@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "self_awareness/core/evidence/tuning.h"
+
 namespace self_awareness::core::evidence {
 
 constexpr double kMostSum = 200;  ///< while its limit is not known
@@ -34,6 +36,19 @@ inline double stepOfSum(double ratio, double least) {
 /// What an event takes from a sum that no event of the other kind is like [nat].
 inline const double kStepOfUsual = std::log(2.0);
 
+/// What is beyond chance [nat]: a sum of log(Q/P), which begins with an event, gets there less
+/// than once in Tuning::hours_of_chance. From where it begins, it does with a probability of
+/// exp(begin - limit) at most (Page 1954), and exp(begin) is Q/P.
+/// @param an_hour events that begin it in an hour, if their probability is Q
+inline double beyondChance(double an_hour, const Tuning& tuning) {
+  return std::max(std::log(an_hour * tuning.hours_of_chance), 0.0);
+}
+
+/// Least limit of such a sum [nat].
+inline double leastLimitOfSum(double an_hour, const Tuning& tuning) {
+  return std::max(tuning.least_sum, beyondChance(an_hour, tuning));
+}
+
 /// Sum of what events say, as in Page's CUSUM test: what is usual takes from it, what is unusual
 /// adds to it, and it never falls below 0. A fault that lasts is found soon, one that comes and
 /// goes is found later, and chance alone hardly adds up.
@@ -60,8 +75,9 @@ struct CountedSum : Sum {
   std::uint32_t events = 0;  ///< of either kind
 
   /// @param more what an unusual one adds [nat]
-  void count(bool is_unusual, double more, std::int64_t stamp) {
-    if (add(is_unusual ? more : -kStepOfUsual, stamp)) {
+  /// @param less what a usual one takes [nat]
+  void count(bool is_unusual, double more, std::int64_t stamp, double less = kStepOfUsual) {
+    if (add(is_unusual ? more : -less, stamp)) {
       unusual = 0;
       events = 0;
     }

@@ -15,16 +15,8 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Who may have a larger share is not rare.
-constexpr double kMostUsual = 0.5;
-// Who has more values says what it likes.
-constexpr std::size_t kMostValues = 16;
 // Lines of a log come in bursts.
 const std::string kLogTopic = "/rosout";
-// A share may be as large as so many standard deviations tell.
-constexpr double kDeviations = 3;
-// The sum that chance reaches so often in an hour at most.
-constexpr double kSumByChance = 0.001;
 
 /// All values of a sender on a topic, and how many messages had one of them.
 struct Topic {
@@ -32,7 +24,8 @@ struct Topic {
   std::uint64_t messages = 0;
 };
 
-std::vector<Topic> topicsIn(const Statistics& counts) {
+/// All topics of a few values: who has more says what it likes.
+std::vector<Topic> topicsIn(const Statistics& counts, const Tuning& tuning) {
   std::map<EventType, Topic> by_type;
   for (EventId id = 0; id < counts.size(); ++id) {
     const EventType& type = counts.vocabulary().at(id);
@@ -45,7 +38,7 @@ std::vector<Topic> topicsIn(const Statistics& counts) {
   std::vector<Topic> all;
   all.reserve(by_type.size());
   for (auto& [type, topic] : by_type) {
-    if (topic.ids.size() <= kMostValues) {
+    if (static_cast<double>(topic.ids.size()) <= tuning.most_values) {
       all.push_back(std::move(topic));
     }
   }
@@ -56,7 +49,7 @@ std::vector<Topic> topicsIn(const Statistics& counts) {
 double shareOf(const Statistics& counts, EventId id, const Topic& topic) {
   return topic.messages == 0 ? 1
                              : likelyShare(static_cast<double>(counts.type(id).events),
-                                           static_cast<double>(topic.messages), kDeviations);
+                                           static_cast<double>(topic.messages));
 }
 
 class ExpectedShares : public Expectation {
@@ -71,7 +64,7 @@ class ExpectedShares : public Expectation {
   ExpectedShares(const Model& model, std::vector<std::size_t> tracks)
       : Expectation(std::move(tracks)), model_(model), usual_(this->tracks().size()) {
     numbers_of_.resize(model.size());
-    for (const Topic& topic : topicsIn(model.learned())) {
+    for (const Topic& topic : topicsIn(model.learned(), model.tuning())) {
       double an_hour = 0;
       std::int64_t pause = std::numeric_limits<std::int64_t>::max();
       for (const EventId id : topic.ids) {
@@ -86,9 +79,10 @@ class ExpectedShares : public Expectation {
           continue;
         }
         Usual& usual = usual_[number];
-        usual.share = std::min(shareOf(model.learned(), of_track, topic), kMostUsual);
+        usual.share =
+            std::min(shareOf(model.learned(), of_track, topic), model.tuning().most_unusual);
         usual.more = stepOfSum(1 / usual.share, model.tuning().least_sum);
-        usual.least_limit = std::max(std::log(an_hour / kSumByChance), model.tuning().least_sum);
+        usual.least_limit = leastLimitOfSum(an_hour / 2, model.tuning());
         usual.pause = std::max(kRateSpan, pause);
         for (const EventId id : topic.ids) {
           numbers_of_[id].push_back(number);
@@ -192,9 +186,9 @@ std::unique_ptr<ChannelState> ExpectedShares::start() const {
 
 std::vector<Track> Values::watch(const Choice& choice) const {
   std::vector<Track> tracks;
-  for (const Topic& topic : topicsIn(choice.both)) {
+  for (const Topic& topic : topicsIn(choice.both, choice.tuning)) {
     for (const EventId id : topic.ids) {
-      if (topic.ids.size() > 1 && shareOf(choice.both, id, topic) < kMostUsual) {
+      if (topic.ids.size() > 1 && shareOf(choice.both, id, topic) < choice.tuning.most_unusual) {
         tracks.push_back({this, id, id});
       }
     }

@@ -16,21 +16,22 @@ namespace self_awareness::core::evidence {
 namespace log_bins {
 
 constexpr std::size_t kBins = kDelayBins;
+/// The edges in an octave, as ratios to the first one.
+inline constexpr std::array<double, 4> kInOctave{1, 1.189207115002721, 1.4142135623730951,
+                                                 1.681792830507429};
 
 namespace detail {
 
 constexpr std::int64_t kFirstEdge = 2500000;  // [ns]
-inline constexpr std::array<double, 4> kQuarterOctaves{1, 1.189207115002721, 1.4142135623730951,
-                                                       1.681792830507429};
 
 /// Lower edges of all bins but the first [ns]. They are whole nanoseconds, so a delay falls into
 /// the same bin on every machine, however it rounds.
 constexpr std::array<std::int64_t, kBins - 1> makeEdges() {
   std::array<std::int64_t, kBins - 1> edges{};
   for (std::size_t k = 0; k < edges.size(); ++k) {
-    const auto octave = static_cast<double>(kFirstEdge << (k / 4));
+    const auto octave = static_cast<double>(kFirstEdge << (k / kInOctave.size()));
     // std::llround is not constexpr. NOLINTNEXTLINE(bugprone-incorrect-roundings)
-    edges[k] = static_cast<std::int64_t>(octave * kQuarterOctaves[k % 4] + 0.5);
+    edges[k] = static_cast<std::int64_t>(octave * kInOctave[k % kInOctave.size()] + 0.5);
   }
   return edges;
 }

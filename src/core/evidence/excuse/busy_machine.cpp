@@ -7,10 +7,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Share of the last kRateSpan. Processes that wait for less are forgiven, and not spoken of: that
-// comes and goes wherever more is begun at once than there are processors.
-constexpr double kNearlyAll = 0.9;
-
 /// Whether a busy machine can be why: who has no time is late, or silent, and does not send too
 /// often.
 bool mayBeBusy(const Excess& excess) {
@@ -62,7 +58,9 @@ bool BusyMachine::explains(const Excess& excess, const Unusual& window) const {
 
 std::optional<std::int64_t> BusyMachine::starvedSince(const Heard& heard) {
   const std::int64_t waited = heard.starved();
-  if (static_cast<double>(waited) < kNearlyAll * static_cast<double>(kRateSpan)) {
+  // Processes that wait for less are forgiven, and not spoken of: that comes and goes wherever
+  // more is begun at once than there are processors.
+  if (static_cast<double>(waited) < model_->tuning().usual * static_cast<double>(kRateSpan)) {
     starved_since_.reset();
   } else {
     starved_since_ = starved_since_.value_or(heard.windowEnd() - waited);

@@ -10,8 +10,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// One that is silent says nothing of its computer.
-constexpr std::size_t kFewest = 2;
 constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
 
 /// Components with something in common: all, or those on one computer.
@@ -99,8 +97,8 @@ std::vector<std::size_t> SilentTogether::together(const std::vector<std::size_t>
     return std::none_of(silent.begin(), silent.end(),
                         [&](std::size_t other) { return causes.isUpstream(other, component); });
   };
-  const bool is_enough = near >= kFewest && static_cast<std::size_t>(std::count_if(
-                                                silent.begin(), silent.end(), isRoot)) >= kFewest;
+  // One that is silent says nothing of its computer.
+  const bool is_enough = near > 1 && std::count_if(silent.begin(), silent.end(), isRoot) > 1;
   return is_enough ? silent : std::vector<std::size_t>();
 }
 

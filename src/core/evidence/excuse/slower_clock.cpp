@@ -12,10 +12,8 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// A pace is known to a fourth after a few messages: the first gap began with the old one.
-constexpr double kSameFactor = 1.25;
 // For so long after two were faster, one is so for the same reason [ns].
-constexpr std::int64_t kHold = 20 * kNanosecondsPerSecond;
+constexpr std::int64_t kHold = 2 * kOneCause;
 
 double factorOf(const Suspect& suspect) {
   return suspect.reason.value / suspect.reason.usual;
@@ -88,9 +86,11 @@ SlowerClock::ByComponent SlowerClock::faster(const Unusual& window) const {
     }
   }
   std::sort(factors.begin(), factors.end());
+  // A pace is known to a fourth after a few messages: the first gap began with the old one.
+  const double same = model_->tuning().margin_of_silence;
   for (auto each = faster.begin(); each != faster.end();) {
     const double ratio = factorOf(each->second) / factors[factors.size() / 2];
-    each = std::max(ratio, 1 / ratio) < kSameFactor ? std::next(each) : faster.erase(each);
+    each = std::max(ratio, 1 / ratio) < same ? std::next(each) : faster.erase(each);
   }
   return faster;
 }

@@ -12,6 +12,7 @@
 #include "core/evidence/channel/channel.h"
 #include "core/evidence/channel/channels.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/verdict/persistence.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -20,9 +21,6 @@ namespace {
 // sooner.
 constexpr double kFoundLate = 60;  // [s]
 constexpr double kFarLater = 10;
-
-// In a row, as the alarm's persistence takes by default.
-constexpr std::int64_t kAlarmWindows = 3;
 
 /// The fewest starts that a relation lacks, of those so far (0: of none) and one more.
 std::size_t fewer(std::size_t so_far, const Relation& relation) {
@@ -175,7 +173,7 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
       of.death_found_after = std::min(of.death_found_after.value_or(found), found);
     } else if (isAbsence(finding) && judged) {
       const double found = model.expectation(number).timeUntil(number, limit) * 1e-9 +
-                           toSeconds(kAlarmWindows * window);
+                           toSeconds(Persistence::Parameters().alarm_windows * window);
       of.found_when_asked = std::min(of.found_when_asked.value_or(found), found);
     } else if (finding == Finding::kBetween) {
       const std::optional<double> found =

@@ -16,8 +16,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// What one of three starts shows alone may be what the robot does at times.
-constexpr std::size_t kFewestThatAgree = 5;
 constexpr double kNoLimit = std::numeric_limits<double>::quiet_NaN();
 
 double hoursOf(std::uint64_t windows, std::int64_t window) {
@@ -78,6 +76,7 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
   }
   leaveHolesOut(silences);
   lost_ = lossesOf(silences);
+  spread_ = spreadOf(silences);
   for (const Gaps& each : silences) {
     limitSilence(each, budget / watched, gaps);
   }
@@ -182,7 +181,8 @@ void LimitSearch::leaveHolesOut(std::vector<Gaps>& all) const {
         static_cast<double>(components[*gaps.hole_in].size()) >= tuning_.several) {
       gaps.hole_in.reset();
     }
-    if (gaps.hole_in && samplesThatHeard(gaps) >= kFewestThatAgree) {
+    // What one of fewer starts shows alone may be what the robot does at times.
+    if (gaps.hole_in && static_cast<double>(longestOfStarts(gaps).size()) > tuning_.several) {
       for (double& gap : gaps.agreed) {
         gap = std::min(gap, gaps.without_hole);
       }
@@ -260,14 +260,39 @@ bool LimitSearch::isOfOneRobot(std::size_t track) const {
          (robots_.numberWith(watched.to) == 1 || robots_.numberWith(watched.from) == 1);
 }
 
-std::size_t LimitSearch::samplesThatHeard(const Gaps& gaps) const {
-  std::set<std::size_t> samples;
+std::vector<double> LimitSearch::longestOfStarts(const Gaps& gaps) const {
+  std::map<std::size_t, double> longest;
   for (std::size_t part = 0; part < with_gaps_.size(); ++part) {
     if (gaps.longest[part] > 0) {
-      samples.insert(with_gaps_[part].sample);
+      double& of_start = longest[with_gaps_[part].sample];
+      of_start = std::max(of_start, gaps.agreed[part]);
     }
   }
-  return samples.size();
+  std::vector<double> sorted;
+  sorted.reserve(longest.size());
+  for (const auto& [start, gap] : longest) {
+    sorted.push_back(gap);
+  }
+  std::sort(sorted.rbegin(), sorted.rend());
+  return sorted;
+}
+
+double LimitSearch::spreadOf(const std::vector<Gaps>& all) const {
+  double number = tuning_.several;
+  double sum = number * tuning_.usual_spread;
+  for (const Gaps& gaps : all) {
+    const std::vector<double> longest = longestOfStarts(gaps);
+    const std::size_t half = longest.size() / 2;
+    if (half == 0 || gaps.largest - window() <=
+                         tuning_.regular * model_.meanGap(model_.tracks()[gaps.track].to)) {
+      continue;
+    }
+    number += 1;
+    for (std::size_t k = 0; k < half; ++k) {
+      sum += std::log(longest[k] / longest[half]) / static_cast<double>(half);
+    }
+  }
+  return sum / number;
 }
 
 double LimitSearch::rareAge(const Gaps& gaps, double rate) const {
@@ -289,8 +314,8 @@ double LimitSearch::rareAge(const Gaps& gaps, double rate) const {
   const double mean_gap = model_.meanGap(id);
   const double by_chance = std::log(static_cast<double>(type.gaps)) * mean_gap;
   const double usual = tuning_.regular * mean_gap;
-  const auto starts = static_cast<double>(samplesThatHeard(gaps));
-  const double samples = (starts + tuning_.prior_pauses) *
+  const auto starts = static_cast<double>(longestOfStarts(gaps).size());
+  const double samples = (starts + std::pow(tuning_.usual_spread / spread_, 2)) *
                          std::max(1.0, by_chance / static_cast<double>(longest.front()));
   longest.resize(std::min(longest.size(), static_cast<std::size_t>(tuning_.pauses)));
   const double hours =

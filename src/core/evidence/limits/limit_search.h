@@ -73,8 +73,11 @@ class LimitSearch {
   /// @param largest value that was seen
   /// @param most that is normal
   bool limit(std::size_t track, double largest, double most);
-  /// Number of samples with a silence, cut off or not.
-  std::size_t samplesThatHeard(const Gaps& gaps) const;
+  /// The longest silence of each start with one, cut off or not, the longest first [ns].
+  std::vector<double> longestOfStarts(const Gaps& gaps) const;
+  /// How much the starts of the robot differ in how long it pauses: by how many nats the longest
+  /// pauses of half of them exceed that of the next start, in the mean of all that pauses.
+  double spreadOf(const std::vector<Gaps>& all) const;
   /// Whether only one of several robots has what a track watches: no other one tells about it.
   bool isOfOneRobot(std::size_t track) const;
   /// Age [ns] that silences of a track reach at a rate [1/h], by its longest gaps.
@@ -91,7 +94,8 @@ class LimitSearch {
   std::vector<const LimitFinder::Recording::Part*> judged_parts_;
   std::vector<Part> with_gaps_;  // the recordings of the training first
   std::vector<GapPart> gap_parts_;
-  double lost_ = 0;  // share of the messages of timers
+  double lost_ = 0;    // share of the messages of timers
+  double spread_ = 0;  // of the starts' longest pauses [nat]
   std::vector<double> limits_;
   double rate_ = 0;
 };

@@ -10,10 +10,8 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// A rate is known after so long [ns], and so many events that were to be expected.
-constexpr std::int64_t kLongEnough = 4 * kNanosecondsPerSecond;
-constexpr double kFewestEvents = 4;
-constexpr double kOtherRate = 2;  // times as often, or as seldom, is another rate
+// A rate is known after so long [ns].
+constexpr std::int64_t kLongEnough = 2 * kRateSpan;
 
 }  // namespace
 
@@ -73,11 +71,12 @@ void Moved::restart() {
 std::optional<bool> Moved::fits(const Sent& sent, EventId known) const {
   const std::int64_t time = now_ - sent.first;
   const double expected = static_cast<double>(time) / model_->meanGap(known);
-  if (time < kLongEnough || expected < kFewestEvents) {
+  if (time < kLongEnough || expected < model_->tuning().several) {
     return std::nullopt;
   }
   const auto events = static_cast<double>(sent.events);
-  return expected < kOtherRate * events && events < kOtherRate * expected;
+  const double most = model_->tuning().margin;  // times as often, or as seldom
+  return expected < most * events && events < most * expected;
 }
 
 bool Moved::standsFor(const std::string& source, const std::string& known,

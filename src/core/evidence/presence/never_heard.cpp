@@ -12,11 +12,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Who came less often in all of training may stay away from one recording.
-constexpr std::uint64_t kFewestGaps = 30;
-// Of what is held ready, there is one in each recording.
-constexpr std::size_t kFewestRecordings = 3;
-
 /// Seconds, rounded: microseconds after a start mean nothing.
 double toMilliseconds(double seconds) {
   return std::round(seconds * 1e3) / 1e3;
@@ -34,10 +29,11 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
       heard_(model.components().size(), false),
       may_be_silent_(model.size(), false) {
   const Statistics& statistics = model.statistics();
-  const double margin = model.tuning().margin;
+  const Tuning& tuning = model.tuning();
+  const auto recordings = static_cast<double>(statistics.recordings().size());
   std::vector<std::int64_t> silent;
   for (EventId id = 0; id < model.size(); ++id) {
-    silent.push_back(std::llround(margin * static_cast<double>(model.longestGap(id))));
+    silent.push_back(std::llround(tuning.margin * static_cast<double>(model.longestGap(id))));
   }
   for (std::size_t track = 0; track < limits.tracks.size(); ++track) {
     if (model.finding(track) == Finding::kSilent && !std::isnan(limits.tracks[track])) {
@@ -49,9 +45,12 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
     component_of_.push_back(model.componentIndex(id));
     Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0, 0};
     const bool latched = model.vocabulary().isLatched(id);
-    bool always = latched ? statistics.recordings().size() >= kFewestRecordings
-                          : model.vocabulary().isMessage(id) && !statistics.recordings().empty() &&
-                                statistics.type(id).gaps >= kFewestGaps;
+    // Of what is held ready, there is one in each recording. Who else came less often in all of
+    // training may stay away from one recording.
+    bool always = latched
+                      ? recordings >= tuning.fewest_starts
+                      : model.vocabulary().isMessage(id) && recordings > 0 &&
+                            static_cast<double>(statistics.type(id).gaps) >= tuning.arming_events;
     for (const Statistics::Recording& recording : statistics.recordings()) {
       const std::int64_t first = id < recording.firsts.size() ? recording.firsts[id] : -1;
       always = always && first >= 0;
@@ -65,7 +64,7 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
     }
     // What is held ready later than a start takes, somebody asked for.
     if (always && (!latched || expected.longest <= alarm_later_)) {
-      expected.late = std::llround(margin * static_cast<double>(expected.longest));
+      expected.late = std::llround(tuning.margin * static_cast<double>(expected.longest));
       // Who holds something ready may have been started before all that is recorded.
       expected.silent = latched ? alarm_later_ : silent[id];
       all_.push_back(expected);

@@ -10,8 +10,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Of a list that will come again.
-constexpr std::size_t kFewestLists = 2;
 constexpr std::size_t kMostNamed = 3;
 
 // Levels of diagnostic_msgs/DiagnosticStatus below ERROR are the node's own business.
@@ -103,7 +101,7 @@ std::optional<Reason> News::reasonOf(EventId id) const {
   const auto known = lists_.find({*any, list.field});
   const bool invents =
       list.values.empty() || known == lists_.end() ||
-      known->second.fewest_recordings < kFewestLists ||
+      known->second.fewest_recordings < 2 ||  // it may not come again
       std::count(known->second.all.begin(), known->second.all.end(), std::set<std::string>()) > 0;
   const bool is_usual =
       list.field == kLevel && std::includes(kLevelsBelowError.begin(), kLevelsBelowError.end(),

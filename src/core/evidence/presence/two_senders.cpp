@@ -8,16 +8,15 @@ namespace self_awareness::core::evidence {
 namespace {
 
 // Who is started again may overlap with who ends.
-constexpr std::int64_t kRestart = 3 * kNanosecondsPerSecond;
-// Where two count their messages, half of the numbers go back.
-constexpr double kMostBack = 0.1;
+constexpr std::int64_t kRestart = 2 * kRateSpan;
 
 /// Whether the messages of an event type came from one sender in training, as far as their numbers
 /// say it.
-bool cameFromOne(const AttributeCounts& counts) {
+bool cameFromOne(const AttributeCounts& counts, const Tuning& tuning) {
   const auto back =
       static_cast<double>(counts.steps[static_cast<std::size_t>(Attributes::Step::kRestart)]);
-  return back <= kMostBack * static_cast<double>(counts.numbered());
+  // Where two count their messages, half of the numbers go back.
+  return back <= (1 - tuning.usual) * static_cast<double>(counts.numbered());
 }
 
 }  // namespace
@@ -38,7 +37,7 @@ void TwoSenders::set(const std::set<SourceGraph::Publication>& doubled) {
     const auto known = ids_.find(each);
     if (known != ids_.end() &&
         std::all_of(known->second.begin(), known->second.end(), [this](EventId id) {
-          return cameFromOne(model_->learned().type(id).attributes);
+          return cameFromOne(model_->learned().type(id).attributes, model_->tuning());
         })) {
       doubled_.insert(each);
       sources.insert(each.first);

@@ -5,6 +5,7 @@
 
 #include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/verdict/persistence.h"
 
 namespace self_awareness::core::evidence {
 
@@ -16,16 +17,16 @@ class Arming {
  public:
   /// So many failures double the events: a day of them at 1 Hz would not do.
   static constexpr std::uint32_t kMostDoublings = 10;
-  /// With fewer abnormal windows, it was no news: no alarm is raised by them.
-  static constexpr std::uint32_t kNews = 3;
 
   /// The numbers that all have in common.
   struct Numbers {
     explicit Numbers(const Tuning& tuning)
         : events(static_cast<std::uint32_t>(tuning.arming_events)),
+          news(static_cast<std::uint32_t>(Persistence::Parameters().alarm_windows)),
           accept_after(toNanoseconds(tuning.accept_after)) {}
 
     std::uint32_t events;
+    std::uint32_t news;         // with fewer abnormal windows, it was none: they raise no alarm
     std::int64_t accept_after;  // [ns]
   };
 
@@ -62,7 +63,7 @@ class Arming {
     }
     abnormal_since_ = abnormal_windows_ == 0 ? end : abnormal_since_;
     abnormal_windows_ += abnormal ? 1 : 0;
-    if (calm && abnormal_windows_ < kNews) {
+    if (calm && abnormal_windows_ < numbers.news) {
       forget();
       return false;
     }

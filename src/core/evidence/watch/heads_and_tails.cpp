@@ -5,9 +5,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Who talks for less of the time pauses, even if no recording holds a whole pause.
-constexpr double kTalks = 0.75;
-
 /// The recordings that hear a type.
 struct HeardIn {
   double number = 0;
@@ -34,7 +31,8 @@ bool isOftenSilent(const Statistics& counts, EventId id, const Tuning& tuning) {
     const auto pause = static_cast<double>(gap);
     talks -= pause > tuning.regular * type.meanGap() ? pause : 0;
   }
-  return talks < kTalks * HeardIn(counts, id).length;
+  // Who talks for less of the time pauses, even if no recording holds a whole pause.
+  return talks < tuning.talking * HeardIn(counts, id).length;
 }
 
 HeadsAndTails::HeadsAndTails(const Statistics& counts, EventId id, const Tuning& tuning)

@@ -229,7 +229,7 @@ Relations::Asked Relations::asked(EventId from, EventId to, std::uint64_t answer
   const bool pauses = std::max(static_cast<double>(counts_.type(to).longestGap()), cut_off_[to]) >
                       tuning_.most_mean_gaps * meanGap(to);
   asked.beyond_chance =
-      by_chance >= (pauses || asked.reaches ? tuning_.rare_misses : tuning_.least_chance_misses) &&
+      by_chance >= (pauses || asked.reaches ? tuning_.rare : tuning_.least_chance_misses) &&
       misses < by_chance;
   asked.divergence =
       asked.beyond_chance ? divergence(static_cast<double>(gaps), misses, by_chance) : 0;
@@ -253,7 +253,7 @@ Relation Relations::owed(EventId from, EventId to) const {
 }
 
 bool Relations::mayBeOwed(EventId from, EventId to, std::uint64_t answers) const {
-  if (missRate(counts_.type(from).gaps, answers) > tuning_.most_misses) {
+  if (missRate(counts_.type(from).gaps, answers) > tuning_.most_unusual) {
     return false;
   }
   const Asked asked = this->asked(from, to, answers);

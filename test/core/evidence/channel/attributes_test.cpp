@@ -435,7 +435,7 @@ double limitOf(const core::Model& model, const std::string& channel) {
 }
 
 TEST(Age, AFewMessagesMayLackAStamp) {
-  for (const std::size_t every : {50U, 200U}) {
+  for (const std::size_t every : {25U, 200U}) {
     const auto model = learned(recordingsWhere([&](Event& event, std::size_t number) {
       if (number % every == every - 1) {
         event.attributes.age = Attributes::kZeroStamp;

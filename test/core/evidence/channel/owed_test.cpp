@@ -143,7 +143,7 @@ TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
     return together({asked(seed), answers(kB, asked(seed), kGap * 3 / 10)});
   });
   EXPECT_GT(missRate(model_->statistics().type(kA).gaps, model_->statistics().answers(kA, kB)),
-            model_->tuning().rare_misses);
+            model_->tuning().rare);
   EXPECT_DOUBLE_EQ(model_->leastLimit(track_),
                    model_->tuning().margin_of_waiting * 1e-9 * model_->usualDelay(kA, kB, 0.95))
       << "in seconds: what usual answers take is normal";

@@ -241,7 +241,7 @@ std::string wordsOf(const std::vector<double>& unusual, const std::string& other
   }
   Reason reason;
   reason.after = other;
-  describeDelays(seen, 100, 30e6, since + 12040 * kMillisecond, reason);
+  describeDelays(seen, 100, 30e6, since + 12040 * kMillisecond, {}, reason);
   EXPECT_EQ(reason.unit, unit::kSeconds);
   EXPECT_EQ(reason.kind, kind) << reason.words;
   return reason.words;

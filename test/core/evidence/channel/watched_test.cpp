@@ -83,24 +83,10 @@ TEST(EvidenceTracks, TheBestPredecessorsAreWatched) {
         (is_watched ? watched : others).push_back(gain(from, to));
       }
     }
-    ASSERT_EQ(watched.size(), Tuning{}.predecessors) << to;
+    ASSERT_EQ(watched.size(), 1U) << to;
     EXPECT_GE(*std::min_element(watched.begin(), watched.end()),
               *std::max_element(others.begin(), others.end()))
         << to;
-  }
-}
-
-TEST(EvidenceTracks, AsManyPredecessorsAreWatchedAsAreAskedFor) {
-  const Statistics counts = startOf(followed(1, kLength), 1);
-  for (const std::size_t predecessors : {0U, 1U}) {
-    Tuning tuning;
-    set(tuning, "predecessors", static_cast<double>(predecessors));
-    const Watched watched = watch(counts, counts, {}, tuning);
-    EXPECT_TRUE(watched.tuning == tuning);
-    const auto of_b = std::count_if(
-        watched.tracks.begin(), watched.tracks.end(),
-        [](const Track& track) { return channelName(track) == kPairs && track.to == kB; });
-    EXPECT_EQ(static_cast<std::size_t>(of_b), predecessors);
   }
 }
 

@@ -15,9 +15,9 @@ TEST(AgeLevel, WhatIsOlderThanOfLateIsARise) {
   AgeLevel level;
   EXPECT_EQ(level.add(0, 5), 0);  // clocks of two computers may differ
   EXPECT_EQ(level.add(kSecond, 5.4), 0) << "that is the next class of ages";
-  EXPECT_NEAR(level.add(kSecond, 6.5), 1.5 - 0.091 * 5, 1e-9);
+  EXPECT_NEAR(level.add(kSecond, 6.5), 1.5 - Attributes::kAgeStep * 5, 1e-9);
   EXPECT_EQ(level.add(2 * kSecond, 4.5), 0);
-  EXPECT_NEAR(level.add(3 * kSecond, 5.5), 1 - 0.091 * 4.5, 1e-9);
+  EXPECT_NEAR(level.add(3 * kSecond, 5.5), 1 - Attributes::kAgeStep * 4.5, 1e-9);
 }
 
 TEST(AgeLevel, AStampOfTheFutureIsOneUntilAllAreSo) {

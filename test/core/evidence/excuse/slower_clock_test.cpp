@@ -15,14 +15,16 @@ constexpr std::int64_t kYears = 400000 * kHour;
 constexpr std::int64_t kFault = 60 * kSecond;  // after the start
 constexpr EventId kTypesOfRobot = 5;
 
-/// A robot in simulated time, with four timers; the last type answers to the one before it.
+/// A robot in simulated time, with four timers, of other phases in each start; the last type
+/// answers to the one before it.
 /// @param faster so many times as often from kFault on, of each that does not answer
 Events robot(std::int64_t start, const std::vector<double>& faster = {1, 1, 1, 1}) {
   Events events;
   for (EventId id = 0; id < faster.size(); ++id) {
     const std::int64_t period = (60 + 30 * static_cast<std::int64_t>(id)) * kMillisecond;
     const auto then = static_cast<std::int64_t>(static_cast<double>(period) / faster[id]);
-    Events of_type = timer(id, start + id * kMillisecond, start + kFault, period);
+    const std::int64_t phase = id * (start / kSecond % 7) * 7 * kMillisecond;
+    Events of_type = timer(id, start + phase, start + kFault, period);
     const Events after = timer(id, of_type.back().stamp + then, start + 2 * kFault, then);
     of_type.insert(of_type.end(), after.begin(), after.end());
     events = together({events, of_type});

@@ -110,6 +110,25 @@ TEST_F(LimitFinderTest, PausesOfOneStartMayBeHiccupsOfItsHost) {
   EXPECT_GT(limit_of(kStart), 2.4 * longest);
 }
 
+TEST_F(LimitFinderTest, StartsThatPauseAlikeSayMoreOfTheNextOne) {
+  // Pauses of 2 to 20 s, or all of them by a factor shorter.
+  const auto pausing = [](std::int64_t shorter) {
+    std::vector<std::int64_t> bursts;
+    std::int64_t at = 0;
+    for (const std::int64_t pause : {2, 20, 5, 14, 9, 2, 20, 5, 14, 9}) {
+      bursts.push_back(at);
+      at += (5 + pause / shorter) * kSecond;
+    }
+    return joystick(bursts, 200 * kSecond);
+  };
+  const auto limit_of = [&](std::int64_t second, std::int64_t third) {
+    model_ = modelOf(pausing(1), later(pausing(second)));
+    const Limits limits = limitsOf(model_, later(pausing(third), 2 * kStart));
+    return limit(limits, kOverdue, kA, kA);
+  };
+  EXPECT_GT(limit_of(3, 9), 1.5 * limit_of(1, 1));
+}
+
 TEST_F(LimitFinderTest, WhoWasSilentThoughAskedIsWatchedForSilenceOnly) {
   // B answers A, but for a quarter of a minute.
   const auto pausing = [](unsigned seed, bool pauses) {

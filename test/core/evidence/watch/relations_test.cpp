@@ -356,7 +356,7 @@ TEST(Relations, WhoPausesOwesAnswersThoughItSeldomMissesByChance) {
   EXPECT_LT(relations.missRateByChance(kA, kB), kTuning.least_chance_misses);
   EXPECT_TRUE(relations.owed(kA, kB).watched);
   Tuning strict;
-  strict.rare_misses = strict.least_chance_misses;
+  strict.rare = strict.least_chance_misses;
   EXPECT_FALSE(Relations(counts, kNoGraph, strict).owed(kA, kB).watched);
 }
 
