@@ -107,7 +107,7 @@ std::unique_ptr<const Expectation> Lost::expect(const Model& model, const Halves
         usual.less = std::log((1 - expected) / (1 - told));
         usual.over = tuning.least_sum / 2;
         usual.least_limit =
-            leastLimitOfSum(told * kNanosecondsPerHour / model.meanGap(id), tuning);
+            leastLimitOfSum(told * kNanosecondsPerHour / std::max(model.meanGap(id), 1.0), tuning);
         return usual;
       });
 }
