@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -115,18 +116,29 @@ TEST_F(LimitFinderTest, StartsThatPauseAlikeSayMoreOfTheNextOne) {
   const auto pausing = [](std::int64_t shorter) {
     std::vector<std::int64_t> bursts;
     std::int64_t at = 0;
-    for (const std::int64_t pause : {2, 20, 5, 14, 9, 2, 20, 5, 14, 9}) {
+    for (std::size_t number = 0; at < 200 * kSecond; ++number) {
       bursts.push_back(at);
-      at += (5 + pause / shorter) * kSecond;
+      at += (5 + std::array<std::int64_t, 5>{2, 20, 5, 14, 9}.at(number % 5) / shorter) * kSecond;
     }
     return joystick(bursts, 200 * kSecond);
   };
-  const auto limit_of = [&](std::int64_t second, std::int64_t third) {
-    model_ = modelOf(pausing(1), later(pausing(second)));
-    const Limits limits = limitsOf(model_, later(pausing(third), 2 * kStart));
-    return limit(limits, kOverdue, kA, kA);
+  // By what its own starts say, and by what is usual of robots.
+  const auto limits_of = [&](std::int64_t second, std::int64_t third) {
+    std::vector<double> limits;
+    for (const double robots : {1.0, 1e6}) {
+      Tuning tuning;
+      tuning.several = robots;
+      model_ = std::make_shared<Model>(
+          watch(countsOf({pausing(1)}), countsOf({later(pausing(second))}), {}, tuning));
+      limits.push_back(
+          limit(limitsOf(model_, later(pausing(third), 2 * kStart)), kOverdue, kA, kA));
+    }
+    return limits;
   };
-  EXPECT_GT(limit_of(3, 9), 1.5 * limit_of(1, 1));
+  const std::vector<double> alike = limits_of(1, 1);
+  EXPECT_LT(alike[0], 0.9 * alike[1]);
+  const std::vector<double> different = limits_of(3, 9);
+  EXPECT_GT(different[0], 1.02 * different[1]);
 }
 
 TEST_F(LimitFinderTest, WhoWasSilentThoughAskedIsWatchedForSilenceOnly) {
