@@ -183,9 +183,12 @@ Events chain(std::int64_t start, std::int64_t length, std::int64_t delay, unsign
 class ExplanationOfAChainTest : public ExplanationTest {
  protected:
   ExplanationOfAChainTest() {
-    restart(watchAll(countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)}),
-                     countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)})),
-            chain(0, 20 * kSecond, 20 * kMillisecond, 3));
+    const Statistics first = countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)});
+    const Statistics second = countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)});
+    Watched watched = watchAll(first, second);
+    watched.tracks.push_back(delay(kC, kA));  // as models of method 16 do, beside C after B
+    watched.halves = {first, second};
+    restart(watched, chain(0, 20 * kSecond, 20 * kMillisecond, 3));
   }
   // B answers later than usual, and C it as usual.
   void addLate() {
@@ -194,11 +197,17 @@ class ExplanationOfAChainTest : public ExplanationTest {
   static Track delay(EventId to, EventId from) { return trackOf(kPairs, to, from); }
 };
 
-TEST_F(ExplanationOfAChainTest, WhoIsLateAfterOneThatIsLateIsNotToBlame) {
+TEST_F(ExplanationOfAChainTest, TheOneWhoseDelayGrewComesBeforeWhoFollowsItAsUsual) {
   addLate();
-  const std::vector<Suspect> named =
-      suspects({{delay(kB, kA), 1.1}, {delay(kC, kB), 1.9}}, last_ + kMillisecond);
-  EXPECT_EQ(idsOf(named), std::vector<EventId>{kB});
+  const auto named = [&](const std::vector<std::pair<Track, double>>& reached) {
+    return idsOf(suspects(reached, last_ + kMillisecond));
+  };
+  EXPECT_EQ(named({{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}}), (std::vector<EventId>{kB, kC}));
+  EXPECT_EQ(named({{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}, {delay(kC, kB), 1.5}}),
+            (std::vector<EventId>{kC, kB}))
+      << "who does not follow as usual is to blame itself";
+  EXPECT_EQ(named({{delay(kB, kA), 1.1}, {delay(kC, kB), 1.9}}), std::vector<EventId>{kB})
+      << "who is late only after one that is late itself is not named";
 }
 
 TEST_F(ExplanationOfAChainTest, WithoutAGraphTheRootOfTheSilentIsWhoIsFollowed) {
