@@ -10,12 +10,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-/// Share of the messages before which some are missing.
-double shareOf(const AttributeCounts& counts) {
-  const auto numbered = static_cast<double>(counts.numbered());
-  return numbered > 0 ? static_cast<double>(counts.losses()) / numbered : 0;
-}
-
 /// Share of the messages that may be missing: half a loss more than training had, and no less than
 /// of all sources together, since who lost less than the others was lucky.
 double shareToExpect(const AttributeCounts& counts, double of_all) {
@@ -89,17 +83,17 @@ std::unique_ptr<const Expectation> Lost::expect(const Model& model, const Halves
   AttributeCounts all;
   for (const std::size_t track : tracks) {
     const AttributeCounts& counts = model.learned().type(model.tracks()[track].to).attributes;
-    if (shareOf(counts) <= model.tuning().rare) {  // who loses more does so by itself
+    if (counts.shareOfLosses() <= model.tuning().rare) {  // who loses more does so by itself
       all.merge(counts);
     }
   }
   return std::make_unique<ExpectedMessages<NumbersOfMessages>>(
-      model, std::move(tracks), [&, of_all = shareOf(all)](EventId id) {
+      model, std::move(tracks), [&, of_all = all.shareOfLosses()](EventId id) {
         const Tuning& tuning = model.tuning();
         const AttributeCounts& counts = model.learned().type(id).attributes;
         NumbersOfMessages::Usual usual;
         usual.pause = pauseOf(model, id);
-        usual.share = shareOf(counts);
+        usual.share = counts.shareOfLosses();
         const double expected = shareToExpect(counts, of_all);
         const double told =
             std::min(std::max(tuning.rare / 2, tuning.several * expected), tuning.most_unusual);

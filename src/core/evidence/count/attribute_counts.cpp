@@ -65,6 +65,10 @@ std::uint64_t AttributeCounts::losses() const {
   return sum;
 }
 
+double AttributeCounts::shareOfLosses() const {
+  return numbered() > 0 ? static_cast<double>(losses()) / static_cast<double>(numbered()) : 0;
+}
+
 bool operator==(const AttributeCounts& a, const AttributeCounts& b) {
   return std::tie(a.ages, a.rises, a.sizes, a.steps, a.repeats, a.longest_repeat) ==
          std::tie(b.ages, b.rises, b.sizes, b.steps, b.repeats, b.longest_repeat);

@@ -60,7 +60,8 @@ class LimitSearch {
   /// is none: that is what the robot does.
   void leaveHolesOut(std::vector<Gaps>& all) const;
   /// Share of the messages of all timers that are not fast, of which one at a time was lost, as
-  /// far as recordings show.
+  /// far as recordings show. Where none was, but may have been: that of all messages, as their
+  /// numbers tell.
   double lossesOf(const std::vector<Gaps>& all) const;
   /// Messages of a timer that came, by the recordings.
   double numberOf(EventId id) const;

@@ -284,6 +284,23 @@ TEST_F(LimitFinderTest, WhereSomeTimersLoseMessagesAllMayLoseOne) {
   EXPECT_LT(silence_of_a(5), 1.9) << "a hole is no loss";
 }
 
+TEST_F(LimitFinderTest, WhatNumbersTellOfFastTimersIsOfSlowOnesToo) {
+  // One of so many messages of B is missing. A lost none of 600.
+  const auto silence_of_a_where = [&](std::int64_t one_in) {
+    Events events = timer(kB, 0, 200 * kSecond, 50 * kMillisecond);
+    for (std::size_t k = 0; k < events.size(); ++k) {
+      const bool lost = static_cast<std::int64_t>(k) % one_in == one_in - 1;
+      events[k].attributes.size = sizeClass(100);
+      events[k].attributes.step = lost ? Attributes::Step::kLostOne : Attributes::Step::kNext;
+    }
+    events = together({timer(kA, 0, 200 * kSecond, kSecond), events});
+    model_ = modelOf(events, later(events));
+    return limit(limitsOf(model_, later(events, 2 * kStart)), kOverdue, kA, kA);
+  };
+  EXPECT_GE(silence_of_a_where(1000), 2) << "it may have been lucky";
+  EXPECT_LT(silence_of_a_where(50), 1.7) << "it was not lucky so often: B sends too fast";
+}
+
 TEST_F(LimitFinderTest, ATimerThatLosesSingleMessagesHasNoLongTail) {
   const Events loses =
       without(timer(kA, 0, 200 * kSecond, 100 * kMillisecond), [](const Event& event) {

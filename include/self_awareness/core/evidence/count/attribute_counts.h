@@ -42,6 +42,8 @@ struct AttributeCounts {
   std::uint64_t numbered() const;
   /// Those of them before which messages are missing.
   std::uint64_t losses() const;
+  /// Their share; 0 without numbers.
+  double shareOfLosses() const;
 };
 
 bool operator==(const AttributeCounts& a, const AttributeCounts& b);
