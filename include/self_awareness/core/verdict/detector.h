@@ -12,10 +12,9 @@
 
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/stream/windows.h"
-#include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/judge.h"
 #include "self_awareness/core/verdict/persistence.h"
-#include "self_awareness/core/verdict/silent.h"
+#include "self_awareness/core/verdict/shared_cause.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::core {
