@@ -48,7 +48,6 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
       reader.wholeNumber("alarm_windows", persistence.alarm_windows, {1, alarm_of});
   persistence.hold_time = core::toNanoseconds(
       reader.seconds("hold_time", inSeconds(persistence.hold_time), {0, kHour}));
-  detector.validate();
   parameters.optional = reader.names("optional");
   parameters.live.poll_interval =
       reader.seconds("poll_interval", defaults.live.poll_interval, {0.01, kHour});

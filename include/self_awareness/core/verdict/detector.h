@@ -57,9 +57,6 @@ class Detector : private WindowObserver {
     std::int64_t settle_time = 5000000000;  ///< after the first event, of all or of a type [ns]
     bool silence_is_abnormal = true;        ///< paper: a window without events scores 0
     UnknownEvents unknown = UnknownEvents::kWarn;  ///< a suspicion, or an alarm at once
-
-    /// @throw std::invalid_argument if a value is out of range.
-    void validate() const;
   };
   /// Told the verdict on a window.
   using Handler = std::function<void(const Verdict&)>;
