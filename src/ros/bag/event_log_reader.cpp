@@ -17,7 +17,6 @@
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/EventLogStart.h"
 #include "self_awareness/core/evidence/tuning.h"
-#include "self_awareness/core/stream/latched.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/encoding_message.h"
 #include "self_awareness/ros/ros_time.h"
