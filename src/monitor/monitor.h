@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -174,6 +175,10 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   void load(const std::string& path);
   /// Reads ~model and its file again. Returns why it failed; empty: it did not.
   std::string reload();
+  /// What ~accept may refer to; none: there is no model, or the paper's detector judges.
+  std::optional<Acceptable> acceptable() const;
+  /// Has the model at work judge by what is accepted.
+  void onAccepted(const std::string& caller);
   /// Goes on with the incidents, and with an alarm that stood when the monitor ended.
   void resume();
   void restart();
@@ -208,7 +213,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   RestartWatch restarts_;
   AlarmKeeper keeper_;
   IncidentKeeper incidents_;
-  AcceptService accepts_;
+  AcceptCalls accepts_;
   MuteCalls mutes_;
   const std::vector<Part*> parts_;    // mutes last: they take out what others tell
   std::unique_ptr<LiveSource> live_;  // last: its listener uses all of the above
