@@ -5,13 +5,10 @@
 #include "node/parameter_reader.h"
 
 namespace self_awareness {
-namespace {
 
 // Longer than any of these times is of use; and they are added up in nanoseconds.
 constexpr double kHour = 3600;  // [s]
 constexpr double kDay = 86400;  // [s]
-
-}  // namespace
 
 std::string MonitorParameters::loadModel(const ros::NodeHandle& private_node_handle,
                                          const std::string& otherwise) {

@@ -6,11 +6,8 @@
 #include <utility>
 
 namespace self_awareness {
-namespace {
 
 constexpr std::chrono::hours kAnyTime(1);  // to wait for what notifies
-
-}  // namespace
 
 FileWriter::FileWriter(double pause) : pause_(pause), thread_([this] { run(); }) {}
 
