@@ -11,8 +11,6 @@
 
 #include "core/verdict/name_list.h"
 #include "diagnostics.h"
-#include "node/live_source.h"
-#include "parameters.h"
 #include "ros/text.h"
 #include "ros/verdict/kept_files.h"
 #include "self_awareness/ros/encoding.h"
@@ -23,8 +21,13 @@ namespace self_awareness {
 AcceptCalls::AcceptCalls(OperatorCalls& calls, Handlers handlers)
     : calls_(calls), handlers_(std::move(handlers)) {}
 
-ros::ServiceServer AcceptCalls::advertise(ros::NodeHandle& private_node_handle) {
-  return private_node_handle.advertiseService("accept", &AcceptCalls::onAccept, this);
+std::vector<ros::ServiceServer> AcceptCalls::advertise(ros::NodeHandle& private_node_handle) {
+  return {private_node_handle.advertiseService("accept", &AcceptCalls::onAccept, this)};
+}
+
+void AcceptCalls::onStart(const Session& session, const std::string& path) {
+  session_ = &session;
+  read(path);
 }
 
 void AcceptCalls::read(const std::string& model) {
@@ -62,6 +65,13 @@ bool AcceptCalls::covers(const core::Alarm& alarm, const core::Vocabulary& vocab
     return std::all_of(topics.begin(), topics.end(), covers);
   }
   return first.id < vocabulary.size() && covers(vocabulary.at(first.id).scope);
+}
+
+void AcceptCalls::onReport(MonitorState& state) {
+  state.accept_error = error();
+  if (session_ != nullptr) {
+    tell(session_->types(), state.communication);
+  }
 }
 
 void AcceptCalls::tell(const std::vector<core::EventType>& types,
@@ -177,51 +187,6 @@ void AcceptCalls::write() {
                  ros1::writeAccepted(accepted, path);
                  *done = true;
                }});
-}
-
-AcceptService::AcceptService(OperatorCalls& calls, Host& host,
-                             std::function<const self_awareness::Incidents&()> incidents)
-    : calls_(calls),
-      host_(host),
-      incidents_(std::move(incidents)),
-      accepts_(calls_, {[this] { return acceptable(); },
-                        [this](const std::string& caller) { onAccepted(caller); }}) {}
-
-std::vector<ros::ServiceServer> AcceptService::advertise(ros::NodeHandle& private_node_handle) {
-  return {accepts_.advertise(private_node_handle)};
-}
-
-void AcceptService::onStart(const Session& /*session*/, const std::string& path) {
-  accepts_.read(path);
-  host_.session()->accept(accepts_.accepted());
-}
-
-void AcceptService::onReport(MonitorState& state) {
-  state.accept_error = accepts_.error();
-  if (host_.session() != nullptr) {
-    accepts_.tell(host_.session()->types(), state.communication);
-  }
-}
-
-std::optional<Acceptable> AcceptService::acceptable() {
-  Session* const session = host_.session();
-  if (session == nullptr || host_.parameters().method != MonitorParameters::Method::kEvidence) {
-    return std::nullopt;
-  }
-  return Acceptable{host_.alarm().standing(),      incidents_(),        session->vocabulary(),
-                    session->detector().unknown(), *session->encoder(), host_.live().now()};
-}
-
-void AcceptService::onAccepted(const std::string& caller) {
-  Session& session = *host_.session();
-  session.accept(accepts_.accepted());
-  const std::optional<core::Alarm>& stands = host_.alarm().standing();
-  if (stands && accepts_.covers(*stands, session.vocabulary())) {
-    calls_.record("accept", caller, ros1::wallNow());
-    session.detector().clearAlarm();
-    host_.standDown("accepted, by " + caller);
-  }
-  host_.report();
 }
 
 }  // namespace self_awareness

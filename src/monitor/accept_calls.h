@@ -16,7 +16,6 @@
 #include "part.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/Accept.h"
-#include "self_awareness/Incidents.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/alarm.h"
@@ -27,7 +26,7 @@ namespace self_awareness {
 /// the model, for other starts, and for `train` and `calibrate` (docs/live.md).
 ///
 /// Belongs to the thread that judges; a thread of its own waits for the disk.
-class AcceptCalls {
+class AcceptCalls : public Part {
  public:
   struct Handlers {
     /// What is there now; none: no model judges by evidence.
@@ -40,16 +39,16 @@ class AcceptCalls {
   /// @param calls admits them
   AcceptCalls(OperatorCalls& calls, Handlers handlers);
 
-  /// Offers the service, for as long as the server lives. It is called in the thread that serves
-  /// the node handle.
-  ros::ServiceServer advertise(ros::NodeHandle& private_node_handle);
+  std::vector<ros::ServiceServer> advertise(ros::NodeHandle& private_node_handle) override;
+  void onStart(const Session& session, const std::string& path) override;
+  void onReport(MonitorState& state) override;
   /// Reads what is accepted beside a model; what is not written yet is newer. A file that is
   /// damaged is named in the log, and is written anew with the next call.
   void read(const std::string& model);
   /// Does what a call asks for. @return the answer
   Accept::Response serve(const Accept::Request& request, const std::string& caller);
   /// Writes what is not written yet, and waits for the disk.
-  void finish() { writer_.finish(); }
+  void finish() override { writer_.finish(); }
 
   const core::Acceptances& accepted() const { return accepted_; }
   /// Whether what stands is accepted: that of its culprit is.
@@ -84,35 +83,11 @@ class AcceptCalls {
 
   OperatorCalls& calls_;
   const Handlers handlers_;
+  const Session* session_ = nullptr;  // that judges; null: none does yet
   std::string path_;
   core::Acceptances accepted_;
   Written written_;
   FileWriter writer_;
-};
-
-/// Has the model at work judge by what operators accept (AcceptCalls).
-class AcceptService : public Part {
- public:
-  /// @param calls admits calls
-  /// @param incidents that a call may refer to
-  AcceptService(OperatorCalls& calls, Host& host,
-                std::function<const self_awareness::Incidents&()> incidents);
-
-  std::vector<ros::ServiceServer> advertise(ros::NodeHandle& private_node_handle) override;
-  void onStart(const Session& session, const std::string& path) override;
-  void onReport(MonitorState& state) override;
-  void finish() override { accepts_.finish(); }
-
- private:
-  /// What ~accept may refer to; none: there is no model, or it is the paper's detector that
-  /// judges.
-  std::optional<Acceptable> acceptable();
-  void onAccepted(const std::string& caller);
-
-  OperatorCalls& calls_;
-  Host& host_;
-  const std::function<const self_awareness::Incidents&()> incidents_;
-  AcceptCalls accepts_;
 };
 
 }  // namespace self_awareness

@@ -8,7 +8,6 @@
 #include "core/verdict/name_list.h"
 #include "ros/text.h"
 #include "self_awareness/core/verdict/incident.h"
-#include "self_awareness/core/verdict/name_pattern.h"
 
 namespace self_awareness {
 namespace {
@@ -60,9 +59,7 @@ std::optional<core::Kind> kindIn(const std::string& name) {
     throw std::invalid_argument("kind: " + ros1::printable(name, ros1::kLongestName) +
                                 " is not a kind; ~alarm shows the kind of what stands");
   }
-  core::Acceptance of_kind;
-  of_kind.kind = kind;
-  if (of_kind.extent() == core::Acceptance::Extent::kNothing) {
+  if (core::Acceptance{"", "", kind}.extent() == core::Acceptance::Extent::kNothing) {
     throw std::invalid_argument("kind: " + name +
                                 " is nothing that a component does; name a component, and the "
                                 "kind of what it may do");
@@ -74,14 +71,11 @@ std::optional<core::Kind> kindIn(const std::string& name) {
 core::Acceptance ofNames(const std::string& component, const std::string& topic,
                          const std::string& kind, const Names& names,
                          const ros1::Encoder& encoder) {
-  core::Acceptance acceptance;
-  acceptance.component = component;
-  acceptance.topic = topic;
   const bool component_known = names.components.count(component) > 0;
   const bool topic_known = names.topics.count(topic) > 0;
   checkName(component, "component", component_known);
   checkName(topic, "topic", topic_known);
-  acceptance.kind = kindIn(kind);
+  core::Acceptance acceptance{component, topic, kindIn(kind)};
   const auto isOne = [](const std::string& name) { return !name.empty() && name.back() != '*'; };
   if (isOne(component) && !component_known) {
     acceptance.component =
@@ -102,20 +96,14 @@ std::vector<core::Acceptance> ofSuspect(const core::Suspect& suspect,
   }
   std::vector<core::Acceptance> all;
   for (const std::string& topic : topics) {
-    core::Acceptance& one = all.emplace_back();
-    one.component = suspect.component;
-    one.topic = topic;
-    one.kind = suspect.reason.kind;
+    all.push_back({suspect.component, topic, suspect.reason.kind});
   }
   return all;
 }
 
 /// That these are off together. @param components in order
 core::Acceptance ofMode(std::vector<std::string> components) {
-  core::Acceptance mode;
-  mode.kind = core::Kind::kNewMode;
-  mode.together = std::move(components);
-  return mode;
+  return {"", "", core::Kind::kNewMode, std::move(components)};
 }
 
 /// What an alarm or a suspicion holds against components: of all that are abnormal by themselves,
@@ -142,9 +130,7 @@ std::vector<core::Acceptance> ofAlarm(const core::Alarm& alarm,
     }
   }
   if (all.empty()) {  // it is of before the start
-    core::Acceptance& one = all.emplace_back();
-    one.component = alarm.culprit;
-    one.kind = alarm.kind;
+    all.push_back({alarm.culprit, "", alarm.kind});
   }
   return all;
 }
@@ -171,9 +157,7 @@ std::vector<core::Acceptance> ofIncident(const self_awareness::Incident& inciden
   }
   std::vector<core::Acceptance> all;
   for (const std::string& name : names) {
-    core::Acceptance& one = all.emplace_back();
-    one.component = name;
-    one.kind = kind;
+    all.push_back({name, "", kind});
   }
   return all;
 }

@@ -36,8 +36,6 @@ std::string whoBlocks(const std::set<std::string>& publishers,
          core::listed(blocking, blocking.size()) + (several ? " do not" : " does not");
 }
 
-BlockedNode::BlockedNode(Host& host, Ask ask) : host_(host), ask_(std::move(ask)) {}
-
 void BlockedNode::onVerdict(core::Verdict& verdict, ros1::Circumstances& /*circumstances*/) {
   if (!verdict.alarm) {
     return;

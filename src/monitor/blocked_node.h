@@ -3,6 +3,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "node/discovery.h"
@@ -24,7 +25,7 @@ class BlockedNode : public Part {
   /// Has these nodes asked (Discovery::ask()).
   using Ask = std::function<void(std::vector<std::string> nodes)>;
 
-  BlockedNode(Host& host, Ask ask);
+  BlockedNode(Host& host, Ask ask) : host_(host), ask_(std::move(ask)) {}
 
   void onVerdict(core::Verdict& verdict, ros1::Circumstances& circumstances) override;
   /// Of an alarm of before the start, nobody is asked.

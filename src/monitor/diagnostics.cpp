@@ -1,8 +1,6 @@
 #include "diagnostics.h"
 
 #include "node/node_status.h"
-#include "self_awareness/core/stream/event.h"
-#include "self_awareness/ros/ros_time.h"
 #include "session.h"
 
 namespace self_awareness {
@@ -51,39 +49,26 @@ std::string allLists(const MonitorState& state) {
 void tellMonitor(const MonitorState& state, Status& status) {
   const ros1::HeardReport& heard = state.communication.heard;
   status.summary(DiagnosticStatus::OK, "listening");
-  if (!state.master_answers) {
-    status.mergeSummary(DiagnosticStatus::WARN, "the master does not answer");
-  }
-  if (heard.newly_dropped > 0) {
-    status.mergeSummary(DiagnosticStatus::WARN,
-                        "overloaded: " + std::to_string(heard.newly_dropped) +
-                            " messages were dropped; who sent them is judged later");
-  }
-  if (state.longest_pause > 0) {
-    status.mergeSummary(DiagnosticStatus::WARN, "overloaded: this program stood still for " +
-                                                    number(state.longest_pause) +
-                                                    " s; all are judged later");
-  }
+  const auto warnIf = [&](bool holds, const std::string& words) {
+    if (holds) {
+      status.mergeSummary(DiagnosticStatus::WARN, words);
+    }
+  };
+  warnIf(!state.master_answers, "the master does not answer");
+  warnIf(heard.newly_dropped > 0, "overloaded: " + std::to_string(heard.newly_dropped) +
+                                      " messages were dropped; who sent them is judged later");
+  warnIf(state.longest_pause > 0, "overloaded: this program stood still for " +
+                                      number(state.longest_pause) + " s; all are judged later");
   tellClock(state.clock_stands_still_for, state.ros_now, status);
   tellRivals(state.clock_rivals, status);
-  if (state.full_of_unknown) {
-    status.mergeSummary(DiagnosticStatus::WARN,
-                        "more than " + std::to_string(Session::kMostUnknownTypes) +
-                            " event types that the model does not know: further ones are not "
-                            "told apart");
-  }
-  if (state.left_out_topics > 0) {
-    status.mergeSummary(DiagnosticStatus::WARN, std::to_string(state.left_out_topics) +
-                                                    " topics are left out: there are too many");
-  }
-  if (!state.keeper_error.empty()) {
-    status.mergeSummary(DiagnosticStatus::WARN,
-                        "what stands is not kept for another start: " + state.keeper_error);
-  }
-  if (!state.accept_error.empty()) {
-    status.mergeSummary(DiagnosticStatus::WARN,
-                        "what is accepted is not kept: " + state.accept_error);
-  }
+  warnIf(state.full_of_unknown,
+         "more than " + std::to_string(Session::kMostUnknownTypes) +
+             " event types that the model does not know: further ones are not told apart");
+  warnIf(state.left_out_topics > 0,
+         std::to_string(state.left_out_topics) + " topics are left out: there are too many");
+  warnIf(!state.keeper_error.empty(),
+         "what stands is not kept for another start: " + state.keeper_error);
+  warnIf(!state.accept_error.empty(), "what is accepted is not kept: " + state.accept_error);
   tellUnheard(state.unheard, state.communication.lists, status);
   status.add("events a second", number(heard.rate));
   status.add("dropped messages", heard.dropped);

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "diagnostics.h"
-#include "ros/text.h"
 #include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness {

@@ -55,10 +55,9 @@ void LogQuotes::add(core::EventId id, const core::EventType& type, const ros1::C
     }
     return;
   }
-  const std::optional<ros1::SaidLine> line =
-      type.type.compare(0, kLog.size(), kLog) == 0
-          ? ros1::readLogLine(content.data(), content.size())
-          : std::nullopt;
+  const std::optional<ros1::LogLine> line = type.type.compare(0, kLog.size(), kLog) == 0
+                                                ? ros1::readLogLine(content.data(), content.size())
+                                                : std::nullopt;
   if (line) {
     words_[id] = type.source + " logged " + nameOf(line->level) + " " + quoted(line->text) +
                  ", and nothing of that level in training";

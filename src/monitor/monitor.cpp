@@ -39,8 +39,8 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                  [this](const self_awareness::Incidents& incidents) {
                    incidents_publisher_.publish(incidents);
                  }),
-      accepts_(calls_, *this,
-               [this]() -> const self_awareness::Incidents& { return incidents_.incidents(); }),
+      accepts_(calls_, {[this] { return acceptable(); },
+                        [this](const std::string& caller) { onAccepted(caller); }}),
       mutes_(calls_, *this),
       parts_({&reports_, &operators_, &recorder_, &kept_logs_, &not_heard_, &blocked_, &quotes_,
               &restarts_, &keeper_, &incidents_, &accepts_, &mutes_}) {
@@ -91,6 +91,7 @@ void Monitor::load(const std::string& path) {
   session_ = std::move(session);
   alarm_.forgetWindow();
   all(&Part::onStart, *session_, path);
+  session_->accept(accepts_.accepted());
   live_->setWanted(session_->wanted(ros::this_node::getName(), parameters_.live.poll_interval));
   ROS_INFO("model %s: %zu event types, %s", path.c_str(), session_->types().size(),
            session_->calibrated() ? "calibrated" : "not calibrated, it will never alarm");
@@ -111,6 +112,26 @@ std::string Monitor::reload() {
     return why;
   }
   return "";
+}
+
+std::optional<Acceptable> Monitor::acceptable() const {
+  if (!session_ || parameters_.method != MonitorParameters::Method::kEvidence) {
+    return std::nullopt;
+  }
+  return Acceptable{alarm_.standing(),      incidents_.incidents(),
+                    session_->vocabulary(), session_->detector().unknown(),
+                    *session_->encoder(),   live_->now()};
+}
+
+void Monitor::onAccepted(const std::string& caller) {
+  session_->accept(accepts_.accepted());
+  const std::optional<core::Alarm>& stands = alarm_.standing();
+  if (stands && accepts_.covers(*stands, session_->vocabulary())) {
+    calls_.record("accept", caller, ros1::wallNow());
+    session_->detector().clearAlarm();
+    standDown("accepted, by " + caller);
+  }
+  report();
 }
 
 void Monitor::resume() {

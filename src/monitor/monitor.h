@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,60 +35,9 @@ namespace self_awareness {
 
 /// Listens to a robot's communication and raises an alarm when it is not what training has seen.
 ///
-/// **Parameters**, all private. They are read and checked at the start: one that is out of range
-/// ends the node (a nodelet is not loaded), one that is unknown is a warning.
-/// config/self_awareness.yaml explains more.
-/// - `~model` (string; default: none): path of the model file, by `train` and `calibrate`. It also
-///   holds what an event is, the length of the windows and the limits.
-/// - `~detector` (string; default: evidence; evidence or paper): what judges the windows: overdue
-///   events, rates, delays and answers, each with a limit of its own; or the score of the paper.
-/// - `~unknown` (string; default: warn; ignore, warn or error): what events are that training
-///   never saw: nothing, a suspicion that tells of each once and counts it from then on, or an
-///   alarm at once.
-/// - `~settle_time` (double, s; default: 5.0; 0 to 3600): time without alarms after the first
-///   message since the start, `~reset` or `~reload`, and after ROS time was set. What is heard
-///   later for the first time has as long before it is judged; everything else is judged on.
-/// - `~alarm_windows` (int; default: 3; 1 to `~alarm_of`): number of abnormal windows that raises
-///   an alarm; fewer are a suspicion.
-/// - `~alarm_of` (int; default: 5; 1 to 1000): number of windows among which they are counted.
-/// - `~hold_time` (double, s; default: 2.0; 0 to 3600): time without an abnormal window after
-///   which an alarm or a suspicion ends.
-/// - `~silence` (string; default: abnormal; abnormal or ignored): with `~detector` paper, what a
-///   window without events is.
-/// - `~optional` (list; default: []): nodes or topics whose absence is accepted (kind never came):
-///   names, or their begins and a `*`. What is unusual of them while they are there is judged.
-/// - `~subscribe` (string; default: used; used, all or model): topics to listen to besides those
-///   of the model: what a node of the robot listens to, what is published, or none. To listen may
-///   wake publishers that work only while somebody listens.
-/// - `~poll_interval` (double, s; default: 1.0; 0.01 to 3600): time between two questions to the
-///   master about who publishes and who listens (steady time).
-/// - `~queue_size` (int, messages; default: 1000; 1 to 1000000): how many of a
-///   publisher may wait on a topic; what comes then is dropped, and counted in the diagnostics.
-/// - `~source_diagnostics` (bool; default: true): one status for every source of the model.
-/// - `~hardware_id` (string; default: none): of the diagnostics.
-/// - `~recorder/duration` (double, s; default: 300.0; 0 to 86400): the flight recorder keeps the
-///   events of so long in memory, and writes them as an event log when an alarm is raised. 0:
-///   there is no recorder.
-/// - `~recorder/after` (double, s; default: 10.0; 0 to 3600): how much of what follows an alarm
-///   is in its file (steady time).
-/// - `~recorder/directory` (string; default: $ROS_HOME/self_awareness/$NAME): folder of the files,
-///   which is created. "$ROS_HOME/" is where ROS keeps what it writes (~/.ros if it is not set),
-///   "$NAME" the name of the monitor.
-/// - `~recorder/files` (int; default: 20; 1 to 100000): most files; the oldest
-///   are removed, but not that of an alarm that stands.
-/// - `~recorder/disk` (int, MB; default: 200; 1 to 1000000): most of all files together.
-/// - `~recorder/memory` (int, MB; default: 32; 1 to 10000): most for the events in memory; the
-///   oldest are forgotten. Files that the disk does not take keep as much each, three at most.
-/// - `~learn_more` (bool; default: false): event logs of normal operation are kept in MODEL.kept,
-///   beside the model, to learn more from (KeptLogs).
-/// - `~learn_more_disk` (int, MB; default: 500; 1 to 1000000): most of all these logs; the oldest
-///   are removed.
-/// - `~diagnostic_period` (double, s; default: 1.0; 0.1 to 3600): time between two
-///   reports on /diagnostics (steady time); a change of the level is reported at once.
-/// - `~diagnostic_bytes` (int, bytes a second; default: 2000; 100 to 10000000): most on
-/// /diagnostics.
-///   What changes goes out at once; sources that do not take turns where all do not fit, of 50 s
-///   at most, whatever that takes.
+/// **Parameters**, all private, are read and checked at the start: one that is out of range ends
+/// the node (a nodelet is not loaded), one that is unknown is a warning. docs/monitor.md lists
+/// them, config/self_awareness.yaml explains each.
 ///
 /// **Subscribed topics**: those of the model and others by `~subscribe`, of any type.
 ///
@@ -174,6 +124,10 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   void load(const std::string& path);
   /// Reads ~model and its file again. Returns why it failed; empty: it did not.
   std::string reload();
+  /// What ~accept may refer to; none: there is no model, or the paper's detector judges.
+  std::optional<Acceptable> acceptable() const;
+  /// Has the model at work judge by what is accepted.
+  void onAccepted(const std::string& caller);
   /// Goes on with the incidents, and with an alarm that stood when the monitor ended.
   void resume();
   void restart();
@@ -208,7 +162,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener, private Host {
   RestartWatch restarts_;
   AlarmKeeper keeper_;
   IncidentKeeper incidents_;
-  AcceptService accepts_;
+  AcceptCalls accepts_;
   MuteCalls mutes_;
   const std::vector<Part*> parts_;    // mutes last: they take out what others tell
   std::unique_ptr<LiveSource> live_;  // last: its listener uses all of the above

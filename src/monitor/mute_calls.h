@@ -29,8 +29,6 @@ class MuteCalls : public Part {
   /// @param calls admits them
   /// @param host whose alarms are muted
   MuteCalls(OperatorCalls& calls, Host& host) : calls_(calls), host_(host) {}
-  MuteCalls(const MuteCalls&) = delete;
-  MuteCalls& operator=(const MuteCalls&) = delete;
 
   std::vector<ros::ServiceServer> advertise(ros::NodeHandle& private_node_handle) override;
   /// Says in the log what stands; where it is muted, as no more than INFO.

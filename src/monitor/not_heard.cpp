@@ -26,8 +26,6 @@ std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
   return unheard;
 }
 
-NotHeard::NotHeard(Host& host) : host_(host) {}
-
 void NotHeard::onVerdict(core::Verdict& verdict, ros1::Circumstances& /*circumstances*/) {
   if (!verdict.suspects.empty()) {
     const Session& session = *host_.session();

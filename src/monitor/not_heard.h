@@ -27,7 +27,7 @@ std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
 /// A node that is dead is silent, as its machine says that nobody listens at its address.
 class NotHeard : public Part {
  public:
-  explicit NotHeard(Host& host);
+  explicit NotHeard(Host& host) : host_(host) {}
 
   /// Says so of suspects that do not come, or come late.
   void onVerdict(core::Verdict& verdict, ros1::Circumstances& circumstances) override;

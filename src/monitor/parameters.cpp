@@ -5,13 +5,10 @@
 #include "node/parameter_reader.h"
 
 namespace self_awareness {
-namespace {
 
 // Longer than any of these times is of use; and they are added up in nanoseconds.
 constexpr double kHour = 3600;  // [s]
 constexpr double kDay = 86400;  // [s]
-
-}  // namespace
 
 std::string MonitorParameters::loadModel(const ros::NodeHandle& private_node_handle,
                                          const std::string& otherwise) {
@@ -48,7 +45,6 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
       reader.wholeNumber("alarm_windows", persistence.alarm_windows, {1, alarm_of});
   persistence.hold_time = core::toNanoseconds(
       reader.seconds("hold_time", inSeconds(persistence.hold_time), {0, kHour}));
-  detector.validate();
   parameters.optional = reader.names("optional");
   parameters.live.poll_interval =
       reader.seconds("poll_interval", defaults.live.poll_interval, {0.01, kHour});

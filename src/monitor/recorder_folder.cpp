@@ -4,7 +4,6 @@
 #include <boost/filesystem.hpp>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <regex>
 #include <stdexcept>
 #include <vector>
@@ -70,15 +69,10 @@ std::string RecorderFolder::pathOf(const std::string& cause, std::int64_t wall_t
 }
 
 std::string timeInFileName(std::int64_t wall_time) {
-  const std::time_t seconds = wall_time / core::kNanosecondsPerSecond;
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  char time[32];
-  std::strftime(time, sizeof time, "%Y-%m-%d-%H-%M-%S", &utc);
   char milliseconds[8];
   std::snprintf(milliseconds, sizeof milliseconds, ".%03d",
                 static_cast<int>(wall_time % core::kNanosecondsPerSecond / kNameStep));
-  return std::string(time) + milliseconds;
+  return core::inUtc(wall_time, "%Y-%m-%d-%H-%M-%S") + milliseconds;
 }
 
 void RecorderFolder::create() const {

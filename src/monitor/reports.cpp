@@ -8,7 +8,6 @@
 #include "node/live_source.h"
 #include "node/node_status.h"
 #include "parameters.h"
-#include "ros/text.h"
 #include "ros/verdict/components.h"
 #include "self_awareness/Components.h"
 #include "self_awareness/ros/graph.h"
@@ -16,12 +15,9 @@
 #include "session.h"
 
 namespace self_awareness {
-namespace {
 
 // Nothing heard since the start for longer is told [ns of steady time].
 constexpr std::int64_t kNothingHeard = 10 * core::kNanosecondsPerSecond;
-
-}  // namespace
 
 Reports::Reports(Host& host, ros::NodeHandle& node_handle, ros::NodeHandle& private_node_handle,
                  const std::string& name)
@@ -117,8 +113,11 @@ void Reports::onReport(MonitorState& state) {
   state.communication.model_error = model_error_;
   state.communication.take(host_.alarm(), heard_.report(now_, live.events().dropped()), now_.ros);
   if (Session* session = host_.session()) {
-    reportModel(*session, state.communication);
+    session->tell(state.communication);
     state.communication.shares = session->takeShares();
+    state.communication.mode = mode_;
+    state.communication.nothing_heard =
+        nothingHeard(state.communication.heard, now_.steady - started_at_);
     state.full_of_unknown = session->full();
     state.mode = session->mode(now_.ros);
   }
@@ -130,18 +129,6 @@ void Reports::onReport(MonitorState& state) {
   state.clock_rivals = live.clockRivals();
   state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
   state.master_answers = discovered.master_answers;
-}
-
-void Reports::reportModel(const Session& session, ros1::CommunicationState& state) {
-  state.calibrated = session.calibrated();
-  state.coverage = session.coverage();
-  state.unheard = session.unheard();
-  state.expected = session.expected();
-  state.optional = session.optional();
-  state.strangers = session.strangers();
-  state.disarmed = session.disarmed();
-  state.mode = mode_;
-  state.nothing_heard = nothingHeard(state.heard, now_.steady - started_at_);
 }
 
 std::string Reports::nothingHeard(const ros1::HeardReport& heard, std::int64_t waited) const {

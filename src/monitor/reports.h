@@ -38,7 +38,6 @@ class Reports : public Part {
  private:
   /// What the clocks say now.
   static ros1::HeardTally::Moment momentNow();
-  void reportModel(const Session& session, ros1::CommunicationState& state);
   /// @param state which lists are told is decided here
   void publishDiagnostics(MonitorState& state);
   /// Why nothing has been heard for so long, in words; empty: something was.

@@ -13,12 +13,9 @@
 #include "session.h"
 
 namespace self_awareness {
-namespace {
 
 constexpr std::size_t kMostCounted = 100;
 constexpr std::int64_t kMinute = 60'000'000'000;
-
-}  // namespace
 
 std::vector<std::string> Restarts::see(const std::map<std::string, std::string>& addresses,
                                        const ros1::Encoder& encoder, std::int64_t now,

@@ -26,12 +26,8 @@ constexpr double kToBeKnown = 4;
 core::Acceptances absencesOf(const std::vector<std::string>& names) {
   core::Acceptances absences;
   for (const std::string& name : names) {
-    core::Acceptance of_component;
-    of_component.component = name;
-    of_component.kind = core::Kind::kNeverCame;
-    core::Acceptance of_topic = of_component;
-    std::swap(of_topic.component, of_topic.topic);
-    if (!absences.add(of_component) || !absences.add(of_topic)) {
+    if (!absences.add({name, "", core::Kind::kNeverCame}) ||
+        !absences.add({"", name, core::Kind::kNeverCame})) {
       throw std::invalid_argument("~optional has too many names; name several by a *");
     }
   }
@@ -186,18 +182,11 @@ core::EventId Session::intern(const core::EventType& type) {
 }
 
 void Session::onRestarted(const std::string& source) {
-  restarted_.resize(types().size(), false);
   for (core::EventId id = 0; id < types().size(); ++id) {
-    restarted_[id] = restarted_[id] || types()[id].source == source;
+    if (types()[id].source == source) {
+      restarted_.insert(id);
+    }
   }
-}
-
-bool Session::isFirstOfRestarted(core::EventId id) {
-  const bool first = id < restarted_.size() && restarted_[id];
-  if (first) {
-    restarted_[id] = false;
-  }
-  return first;
 }
 
 std::string Session::sourceAndTopic(core::EventId id) const {
@@ -205,13 +194,17 @@ std::string Session::sourceAndTopic(core::EventId id) const {
   return ros1::withSource(type.source, type.scope);
 }
 
-std::vector<ros1::CommunicationState::Stranger> Session::strangers() const {
-  std::vector<ros1::CommunicationState::Stranger> strangers;
+void Session::tell(ros1::CommunicationState& state) const {
+  state.calibrated = calibrated_;
+  state.coverage = coverage_;
+  state.unheard = unheard_;
+  state.expected = expected_;
+  state.optional = optional_;
+  state.disarmed = disarmed();
   for (const auto& [id, events] : detector_.unknown()) {
     const core::EventType& type = vocabulary_->at(id);
-    strangers.push_back({type.source, type.scope, events});
+    state.strangers.push_back({type.source, type.scope, events});
   }
-  return strangers;
 }
 
 std::vector<std::string> Session::disarmed() const {

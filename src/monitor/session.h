@@ -49,14 +49,8 @@ class Session {
   std::int64_t window() const { return trained_.window; }
   /// Whether there are limits, or a threshold, for the detector that was chosen.
   bool calibrated() const { return calibrated_; }
-  /// How soon faults of the model's components are found, with what is accepted; empty: not known
-  /// of this detector.
-  const std::vector<core::evidence::Coverage>& coverage() const { return coverage_; }
-  /// How often messages came in training [Hz], by component and topic; empty: not known of this
-  /// detector.
-  const std::map<std::string, std::map<std::string, double>>& expected() const {
-    return expected_;
-  }
+  /// Tells the diagnostics what the model and the detector know.
+  void tell(ros1::CommunicationState& state) const;
   /// Largest share of a limit that components have reached in the windows since the last call, by
   /// component; 1 is the limit. Empty: no window was judged, or not known of this detector.
   std::map<std::string, double> takeShares();
@@ -65,8 +59,6 @@ class Session {
   std::uint64_t content() const;
   /// Components that may be absent, or some topics of which may.
   const std::set<std::string>& optional() const { return optional_; }
-  /// What was published in training, and nobody subscribed to, by source and topic.
-  const std::set<core::SourceGraph::Publication>& unheard() const { return unheard_; }
   /// Event types of the model, by their ids.
   const std::vector<core::EventType>& types() const { return trained_.vocabulary().types(); }
   /// Event types of the model, and after them the unknown ones as they appeared.
@@ -87,10 +79,6 @@ class Session {
   /// Event types of the model that this publisher sends.
   std::vector<core::EventId> typesOf(const ros1::Publication& publication) const;
 
-  /// Who sends what training never saw, where, and how often since the start; without what is
-  /// accepted.
-  std::vector<ros1::CommunicationState::Stranger> strangers() const;
-
   /// Whose delays are not watched now, and after whom, in words.
   std::vector<std::string> disarmed() const;
 
@@ -101,7 +89,7 @@ class Session {
   /// Takes note that a source was started again.
   void onRestarted(const std::string& source);
   /// Whether an event is the first of its type since its node was started again.
-  bool isFirstOfRestarted(core::EventId id);
+  bool isFirstOfRestarted(core::EventId id) { return restarted_.erase(id) > 0; }
 
   /// What this model has to hear.
   /// @param node full name of the monitor's process, whose own output is left out
@@ -127,6 +115,7 @@ class Session {
   ros1::TrainedModel trained_;
   bool calibrated_;
   std::shared_ptr<const core::evidence::Model> model_;  // of the judge; null: it is the paper's
+  // As in CommunicationState; empty: not known of this detector.
   std::vector<core::evidence::Coverage> coverage_;
   std::map<std::string, std::map<std::string, double>> expected_;
   std::vector<double> shares_;  // since they were taken, by component; empty: no window since
@@ -138,7 +127,7 @@ class Session {
   std::shared_ptr<core::SourceGraph> graph_;  // of training, and what addEdges() added
   std::shared_ptr<core::Vocabulary> vocabulary_;
   std::shared_ptr<const ros1::Encoder> encoder_;
-  std::vector<bool> restarted_;  // by id of the model: its node was, and it has not come since
+  std::set<core::EventId> restarted_;  // of the model, and not heard since their nodes were
   core::Detector detector_;
 };
 

@@ -4,28 +4,15 @@
 #include <cmath>
 
 #include "core/verdict/name_list.h"
+#include "self_awareness/core/stream/clock_watch.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness {
-namespace {
 
-using core::kNanosecondsPerSecond;
-
-// A replay may be faster than the robot was, but no clock of one publisher goes back by so much.
-constexpr std::int64_t kBack = kNanosecondsPerSecond / 10;
-constexpr std::int64_t kForth = 5 * kNanosecondsPerSecond;
+// A replay may be faster than the robot was, but not by more.
 constexpr double kFastest = 100;
 constexpr std::size_t kMostRecent = 10;
 constexpr std::size_t kMostPublishers = 5;
-
-}  // namespace
-
-bool ClockContest::wasSet(const Look& look) const {
-  const std::int64_t advance = look.ros_time - last_->ros_time;
-  const auto passed = static_cast<double>(look.steady_time - last_->steady_time);
-  return advance < -kBack ||
-         (advance > kForth && static_cast<double>(advance) > kFastest * passed);
-}
 
 double ClockContest::pace() const {
   const auto passed =
@@ -36,7 +23,8 @@ double ClockContest::pace() const {
 
 std::int64_t ClockContest::look(std::int64_t ros_now, std::int64_t steady_now, bool simulated) {
   const Look now{ros_now, steady_now};
-  const bool set = simulated && last_ && wasSet(now);
+  const bool set = simulated && last_ &&
+                   core::wasSet(ros_now - last_->ros_time, steady_now - last_->steady_time, true);
   if (set) {
     set_at_ = steady_now;
     if (!since_ && publishers_.size() > 1) {
@@ -48,7 +36,7 @@ std::int64_t ClockContest::look(std::int64_t ros_now, std::int64_t steady_now, b
   if (since_ && (!simulated || steady_now - set_at_ > kOverAfter)) {
     since_.reset();
   }
-  if (recent_.empty() || steady_now - recent_.back().steady_time >= kNanosecondsPerSecond) {
+  if (recent_.empty() || steady_now - recent_.back().steady_time >= core::kNanosecondsPerSecond) {
     recent_.push_back(now);
     if (recent_.size() > kMostRecent) {
       recent_.pop_front();

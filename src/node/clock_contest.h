@@ -40,7 +40,6 @@ class ClockContest {
     std::int64_t steady_time;
   };
 
-  bool wasSet(const Look& look) const;
   /// How fast ROS time ran lately, compared with the steady clock.
   double pace() const;
 

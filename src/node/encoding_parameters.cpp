@@ -17,21 +17,20 @@ using XmlRpc::XmlRpcValue;
 
 constexpr char kNamespace[] = "encoding";
 
-[[noreturn]] void fail(const std::string& name, const std::string& must_be) {
-  throw std::invalid_argument(name + " must be " + must_be +
-                              "; config/encoding.yaml is an example");
+/// @throw std::invalid_argument if a parameter is not what it must be
+void require(bool holds, const std::string& name, const std::string& must_be) {
+  if (!holds) {
+    throw std::invalid_argument(name + " must be " + must_be +
+                                "; config/encoding.yaml is an example");
+  }
 }
 
 std::vector<std::string> textsOf(const std::string& name, XmlRpcValue& value,
                                  const char* must_be = "a list of regular expressions") {
   std::vector<std::string> texts;
-  if (value.getType() != XmlRpcValue::TypeArray) {
-    fail(name, must_be);
-  }
+  require(value.getType() == XmlRpcValue::TypeArray, name, must_be);
   for (int i = 0; i < value.size(); ++i) {
-    if (value[i].getType() != XmlRpcValue::TypeString) {
-      fail(name, must_be);
-    }
+    require(value[i].getType() == XmlRpcValue::TypeString, name, must_be);
     texts.push_back(static_cast<std::string>(value[i]));
   }
   return texts;
@@ -40,14 +39,10 @@ std::vector<std::string> textsOf(const std::string& name, XmlRpcValue& value,
 std::vector<ros1::Rename> renamesOf(const std::string& name, XmlRpcValue& value) {
   constexpr char kForm[] = "a list of pairs: a regular expression, and the name in its place";
   std::vector<ros1::Rename> renames;
-  if (value.getType() != XmlRpcValue::TypeArray) {
-    fail(name, kForm);
-  }
+  require(value.getType() == XmlRpcValue::TypeArray, name, kForm);
   for (int i = 0; i < value.size(); ++i) {
     const std::vector<std::string> pair = textsOf(name, value[i], kForm);
-    if (pair.size() != 2) {
-      fail(name, kForm);
-    }
+    require(pair.size() == 2, name, kForm);
     renames.push_back({pair[0], pair[1]});
   }
   return renames;
@@ -57,14 +52,11 @@ std::vector<ros1::Rename> renamesOf(const std::string& name, XmlRpcValue& value)
 /// as two levels.
 void addFields(const std::string& name, const std::string& prefix, XmlRpcValue& value,
                std::map<std::string, std::string>& fields) {
-  if (value.getType() != XmlRpcValue::TypeStruct) {
-    fail(name, "fields by datatype");
-  }
+  require(value.getType() == XmlRpcValue::TypeStruct, name, "fields by datatype");
   for (auto& [key, field] : value) {
-    if (field.getType() == XmlRpcValue::TypeStruct && field.hasMember("classes")) {
-      fail(name + "/" + prefix + key,
-           "a field alone: its classes are learned from bags, by train; record bags");
-    }
+    require(field.getType() != XmlRpcValue::TypeStruct || !field.hasMember("classes"),
+            name + "/" + prefix + key,
+            "a field alone: its classes are learned from bags, by train; record bags");
     if (field.getType() == XmlRpcValue::TypeString) {
       fields[prefix + key] = static_cast<std::string>(field);
     } else {
@@ -80,15 +72,12 @@ std::optional<ros1::ModeField> modeOf(const std::string& name, XmlRpcValue& valu
   ros1::ModeField mode;
   const std::map<std::string, std::string*> parts{{"topic", &mode.topic}, {"field", &mode.field}};
   const std::string form = "a topic and a field: {topic: /mode, field: data}";
-  if (value.getType() != XmlRpcValue::TypeStruct ||
-      value.size() != static_cast<int>(parts.size())) {
-    fail(name, form);
-  }
+  require(
+      value.getType() == XmlRpcValue::TypeStruct && value.size() == static_cast<int>(parts.size()),
+      name, form);
   for (auto& [key, part] : value) {
     const auto known = parts.find(key);
-    if (known == parts.end() || part.getType() != XmlRpcValue::TypeString) {
-      fail(name, form);
-    }
+    require(known != parts.end() && part.getType() == XmlRpcValue::TypeString, name, form);
     *known->second = static_cast<std::string>(part);
   }
   mode.topic = ros1::resolvedName(mode.topic);
@@ -96,16 +85,11 @@ std::optional<ros1::ModeField> modeOf(const std::string& name, XmlRpcValue& valu
 }
 
 ros1::EncodingRules::Source sourceOf(const std::string& name, XmlRpcValue& value) {
-  if (value.getType() == XmlRpcValue::TypeString) {
-    const std::string text = value;
-    if (text == "callerid") {
-      return ros1::EncodingRules::Source::kCallerId;
-    }
-    if (text == "none") {
-      return ros1::EncodingRules::Source::kNone;
-    }
-  }
-  fail(name, "callerid or none");
+  const std::string text =
+      value.getType() == XmlRpcValue::TypeString ? static_cast<std::string>(value) : "";
+  require(text == "callerid" || text == "none", name, "callerid or none");
+  return text == "none" ? ros1::EncodingRules::Source::kNone
+                        : ros1::EncodingRules::Source::kCallerId;
 }
 
 }  // namespace
@@ -117,9 +101,7 @@ ros1::EncodingRules loadEncoding(const ros::NodeHandle& private_node_handle) {
   if (!private_node_handle.getParam(kNamespace, values)) {
     return rules;
   }
-  if (values.getType() != XmlRpcValue::TypeStruct) {
-    fail(space, "the keys of an encoding file");
-  }
+  require(values.getType() == XmlRpcValue::TypeStruct, space, "the keys of an encoding file");
   const std::map<std::string, std::vector<std::string>*> lists{
       {"include_topics", &rules.include_topics},
       {"exclude_topics", &rules.exclude_topics},
@@ -140,7 +122,7 @@ ros1::EncodingRules loadEncoding(const ros::NodeHandle& private_node_handle) {
     } else if (key == "mode") {
       rules.mode = modeOf(name, value);
     } else {
-      fail(name, "left out: there is no such key in an encoding");
+      require(false, name, "left out: there is no such key in an encoding");
     }
   }
   try {

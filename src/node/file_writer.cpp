@@ -6,11 +6,8 @@
 #include <utility>
 
 namespace self_awareness {
-namespace {
 
 constexpr std::chrono::hours kAnyTime(1);  // to wait for what notifies
-
-}  // namespace
 
 FileWriter::FileWriter(double pause) : pause_(pause), thread_([this] { run(); }) {}
 
@@ -37,7 +34,12 @@ void FileWriter::add(File file) {
 
 void FileWriter::run() {
   while (std::optional<File> file = next()) {
-    const std::string error = attempt(*file);
+    std::string error;
+    try {
+      file->write(file->path);
+    } catch (const std::exception& problem) {
+      error = problem.what();
+    }
     onAttempt(std::move(*file), error);
   }
 }
@@ -58,15 +60,6 @@ std::optional<FileWriter::File> FileWriter::next() {
   File file = std::move(shared->waiting.front());
   shared->waiting.pop_front();
   return file;
-}
-
-std::string FileWriter::attempt(const File& file) {
-  try {
-    file.write(file.path);
-    return "";
-  } catch (const std::exception& error) {
-    return error.what();
-  }
 }
 
 // The log is written without the lock: it may wait for the console.

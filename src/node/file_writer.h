@@ -57,8 +57,7 @@ class FileWriter {
   void run();
   /// Waits for the next file to write; none: the thread must end.
   std::optional<File> next();
-  /// @return why it failed; empty: it did not
-  static std::string attempt(const File& file);
+  /// @param error why it failed; empty: it did not
   void onAttempt(File file, const std::string& error);
   /// @return whether it is tried again; else it is given up
   bool keepForLater(File file, const std::string& error);

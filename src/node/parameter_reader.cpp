@@ -4,6 +4,7 @@
 #include <ros/param.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include <boost/algorithm/string/join.hpp>
 #include <cmath>
 #include <sstream>
 
@@ -25,37 +26,33 @@ bool contains(const ParameterReader::Range& range, double value) {
 
 }  // namespace
 
-std::string ParameterReader::text(const std::string& name, const std::string& otherwise) {
-  return text(name, otherwise, "text");
+template <typename T>
+void ParameterReader::log(const std::string& name, const T& value) const {
+  ROS_INFO_STREAM(node_handle_.resolveName(name) << ": " << value);
+}
+
+template <typename T>
+T ParameterReader::read(const std::string& name, T otherwise, XmlRpcValue::Type type,
+                        const std::string& must_be) {
+  known_.insert(name);
+  XmlRpcValue value;
+  if (node_handle_.getParam(name, value)) {
+    if (value.getType() != type) {
+      fail(name, value, must_be);
+    }
+    otherwise = static_cast<T>(value);
+  }
+  log(name, otherwise);
+  return otherwise;
 }
 
 std::string ParameterReader::text(const std::string& name, const std::string& otherwise,
                                   const std::string& must_be) {
-  known_.insert(name);
-  std::string text = otherwise;
-  XmlRpcValue value;
-  if (node_handle_.getParam(name, value)) {
-    if (value.getType() != XmlRpcValue::TypeString) {
-      fail(name, value, must_be);
-    }
-    text = static_cast<std::string>(value);
-  }
-  log(name, text);
-  return text;
+  return read(name, otherwise, XmlRpcValue::TypeString, must_be);
 }
 
 bool ParameterReader::flag(const std::string& name, bool otherwise) {
-  known_.insert(name);
-  bool flag = otherwise;
-  XmlRpcValue value;
-  if (node_handle_.getParam(name, value)) {
-    if (value.getType() != XmlRpcValue::TypeBoolean) {
-      fail(name, value, "true or false");
-    }
-    flag = static_cast<bool>(value);
-  }
-  log(name, flag);
-  return flag;
+  return read(name, otherwise, XmlRpcValue::TypeBoolean, "true or false");
 }
 
 std::vector<std::string> ParameterReader::names(const std::string& name) {
@@ -77,11 +74,7 @@ std::vector<std::string> ParameterReader::names(const std::string& name) {
       names.push_back(text);
     }
   }
-  std::string all;
-  for (const std::string& each : names) {
-    all += (all.empty() ? "" : ", ") + each;
-  }
-  log(name, "[" + all + "]");
+  log(name, "[" + boost::algorithm::join(names, ", ") + "]");
   return names;
 }
 
@@ -121,11 +114,6 @@ double ParameterReader::readNumber(const std::string& name, double otherwise,
     fail(name, value, must_be);
   }
   return static_cast<double>(value);
-}
-
-template <typename T>
-void ParameterReader::log(const std::string& name, const T& value) const {
-  ROS_INFO_STREAM(node_handle_.resolveName(name) << ": " << value);
 }
 
 void ParameterReader::fail(const std::string& name, const XmlRpcValue& value,

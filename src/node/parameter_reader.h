@@ -21,7 +21,9 @@ class ParameterReader {
 
   explicit ParameterReader(const ros::NodeHandle& node_handle) : node_handle_(node_handle) {}
 
-  std::string text(const std::string& name, const std::string& otherwise);
+  /// @param must_be in words
+  std::string text(const std::string& name, const std::string& otherwise,
+                   const std::string& must_be = "text");
   bool flag(const std::string& name, bool otherwise);
   /// @param unit in words, as in "a number of seconds"
   double number(const std::string& name, double otherwise, const Range& range,
@@ -55,8 +57,10 @@ class ParameterReader {
   void warnOfUnknown() const;
 
  private:
-  std::string text(const std::string& name, const std::string& otherwise,
-                   const std::string& must_be);
+  /// A value of one kind.
+  template <typename T>
+  T read(const std::string& name, T otherwise, XmlRpc::XmlRpcValue::Type type,
+         const std::string& must_be);
   /// A number of either kind, as XML-RPC has them.
   double readNumber(const std::string& name, double otherwise, const std::string& must_be);
   template <typename T>

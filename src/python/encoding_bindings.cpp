@@ -16,7 +16,6 @@
 #include "ros/check.h"
 #include "ros/text.h"
 #include "self_awareness/Encoding.h"
-#include "self_awareness/core/stream/latched.h"
 #include "self_awareness/core/stream/listed.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/encoding.h"

@@ -90,12 +90,12 @@ std::shared_ptr<const ros1::EventLogFile> openLog(const std::string& path) {
   static Opened last;  // who calls holds Python's lock
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) {
-    return std::make_shared<const ros1::EventLogFile>(path);  // says what is wrong
+    return ros1::openEventLog(path);  // says what is wrong
   }
   const Identity identity{path,           status.st_dev,         status.st_ino,
                           status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
   if (!last.file || last.identity != identity) {
-    last = {identity, std::make_shared<const ros1::EventLogFile>(path)};
+    last = {identity, ros1::openEventLog(path)};
   }
   return last.file;
 }

@@ -3,14 +3,10 @@
 #include "event_recorder.h"
 #include "node/run_node.h"
 
-namespace {
-
 constexpr char kUsage[] =
     "usage: rosrun self_awareness record_events _output:=PREFIX [_PARAMETER:=VALUE...]\n\n"
     "Records event logs of the running robot. Better: roslaunch self_awareness record.launch\n"
     "output:=PREFIX; with --ros-args, it explains its arguments.";
-
-}  // namespace
 
 int main(int argc, char** argv) {
   return self_awareness::runNode(argc, argv, "recorder", kUsage, [] {

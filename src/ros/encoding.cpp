@@ -8,7 +8,6 @@
 #include "message_definition.h"
 #include "message_field.h"
 #include "name_patterns.h"
-#include "self_awareness/core/stream/latched.h"
 #include "self_awareness/core/stream/listed.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/own_output.h"
@@ -110,23 +109,19 @@ std::string whyLeftOut(const Connection& connection) {
 }
 
 Connection connectionFrom(const ros::M_string& header, const std::string& topic) {
-  Connection connection;
   // Who records may have been given a relative name; the publisher says the whole one.
   const std::string said = headerField(header, "topic");
   const bool relative = !topic.empty() && topic[0] != '/' && !said.empty();
-  connection.callerid = resolvedName(printable(headerField(header, "callerid")));
-  connection.topic = resolvedName(printable(relative ? said : topic));
-  connection.datatype = printable(headerField(header, "type"));
-  connection.md5sum = printable(headerField(header, "md5sum"));
-  connection.definition = headerField(header, "message_definition");
-  connection.latching = headerField(header, "latching") == "1";
-  return connection;
+  return {resolvedName(printable(headerField(header, "callerid"))),
+          resolvedName(printable(relative ? said : topic)),
+          printable(headerField(header, "type")),
+          headerField(header, "message_definition"),
+          headerField(header, "latching") == "1",
+          printable(headerField(header, "md5sum"))};
 }
 
 bool ConnectionEncoder::accept() {
-  const bool accepted = !skip_next_;
-  skip_next_ = false;
-  return accepted;
+  return !std::exchange(skip_next_, false);
 }
 
 std::optional<core::EventId> ConnectionEncoder::latched() {

@@ -110,10 +110,6 @@ void EncodingRules::validate() const {
   }
 }
 
-bool operator==(const ValueClasses& a, const ValueClasses& b) {
-  return a.number == b.number && a.bounds == b.bounds;
-}
-
 std::vector<std::string> namesOfClasses(const std::vector<double>& bounds) {
   std::vector<std::string> names{"below " + inShort(bounds.front())};
   for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
@@ -127,14 +123,6 @@ std::vector<std::string> namesOfClasses(const std::vector<double>& bounds) {
 std::size_t classOf(double value, const std::vector<double>& bounds) {
   const auto next = std::upper_bound(bounds.begin(), bounds.end(), value);
   return std::isnan(value) ? bounds.size() + 1 : static_cast<std::size_t>(next - bounds.begin());
-}
-
-bool operator==(const Rename& a, const Rename& b) {
-  return a.pattern == b.pattern && a.name == b.name;
-}
-
-bool operator==(const ModeField& a, const ModeField& b) {
-  return a.topic == b.topic && a.field == b.field;
 }
 
 bool operator==(const EncodingRules& a, const EncodingRules& b) {

@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "master_calls.h"
-#include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"
 
@@ -91,8 +90,10 @@ void forEachGraph(const std::vector<GraphChange>& changes,
 }
 
 std::optional<SystemState> fetchSystemState() {
-  std::optional<XmlRpc::XmlRpcValue> state = askMaster("getSystemState");
-  std::optional<XmlRpc::XmlRpcValue> types = askMaster("getTopicTypes");
+  std::vector<std::optional<XmlRpc::XmlRpcValue>> answers =
+      callMaster({{"getSystemState"}, {"getTopicTypes"}});
+  std::optional<XmlRpc::XmlRpcValue>& state = answers[0];
+  std::optional<XmlRpc::XmlRpcValue>& types = answers[1];
   if (!state || !types) {
     return std::nullopt;
   }
@@ -210,11 +211,7 @@ std::set<core::EventType> playedIn(const Graph& graph, const Encoder& encoder) {
   std::set<core::EventType> played;
   for (const auto& [name, topic] : graph.topics) {
     for (const std::string& node : topic.publishers) {
-      Connection connection;
-      connection.callerid = node;
-      connection.topic = name;
-      connection.datatype = topic.datatype;
-      if (const auto type = encoder.played(connection)) {
+      if (const auto type = encoder.played({node, name, topic.datatype})) {
         played.insert(*type);
       }
     }

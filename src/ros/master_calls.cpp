@@ -43,15 +43,6 @@ std::optional<XmlRpcValue> payloadOf(const std::string& method, XmlRpcValue& res
 
 }  // namespace
 
-std::optional<XmlRpcValue> askMaster(const std::string& method) {
-  XmlRpcValue request;
-  request[0] = ros::this_node::getName();
-  XmlRpcValue response;
-  XmlRpcValue payload;
-  return ros::master::execute(method, request, response, payload, false) ? std::optional(payload)
-                                                                         : std::nullopt;
-}
-
 Answers callMaster(const std::vector<MasterCall>& calls) {
   Answers answers;
   for (std::size_t begin = 0; begin < calls.size(); begin = answers.size()) {

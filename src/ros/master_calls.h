@@ -8,14 +8,10 @@
 
 namespace self_awareness::ros1 {
 
-/// Asks the master by a method without arguments, and blocks until it answers; none if it does
-/// not.
-std::optional<XmlRpc::XmlRpcValue> askMaster(const std::string& method);
-
 /// A call to the master.
 struct MasterCall {
   std::string method;
-  std::vector<std::string> arguments;  ///< after the name of this node
+  std::vector<std::string> arguments{};  ///< after the name of this node
 };
 
 /// Makes calls to the master together: one by one, a few hundred would take the master, and all

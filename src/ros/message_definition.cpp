@@ -247,10 +247,6 @@ bool MessageDefinition::isBuiltIn(const std::string& type) {
   return type == "string" || builtInSizes().count(type) > 0;
 }
 
-std::size_t MessageDefinition::sizeOf(const std::string& type) {
-  return builtInSizes().at(type);
-}
-
 std::vector<MessageSteps> MessageDefinition::stepsOf(const std::string& type) const {
   std::vector<MessageSteps> steps;
   Expansion expansion(*this);

@@ -57,8 +57,6 @@ class MessageDefinition {
   const std::string& datatype() const { return datatype_; }
   /// Whether a type is one of those that all messages are made of: numbers, times and string.
   static bool isBuiltIn(const std::string& type);
-  /// Size of a built-in type but string [bytes].
-  static std::size_t sizeOf(const std::string& type);
   /// The fields of a type, in their order.
   /// @throw std::invalid_argument if the definition of the type is missing
   const Lines& linesOf(const std::string& type) const;

@@ -11,13 +11,6 @@
 #include "text.h"
 
 namespace self_awareness::ros1 {
-namespace {
-
-[[noreturn]] void failUpgrade(const std::string& what) {
-  throw std::invalid_argument(what);
-}
-
-}  // namespace
 
 /// From the one layout of a type to the other.
 struct MessageUpgrade::Layout {
@@ -44,6 +37,7 @@ class MessageUpgrade::Builder {
     std::vector<MessageSteps> steps = from_.stepsOf(type);  // bounds their number
     const MessageDefinition::Lines& old = from_.linesOf(type);
     std::vector<std::optional<std::size_t>> taken(old.size());  // index in the new fields
+    const std::vector<MessageSteps> blank = to_.stepsOf(type);
     for (const MessageDefinition::Line& line : to_.linesOf(type)) {
       const auto same = std::find_if(old.begin(), old.end(),
                                      [&](const auto& each) { return each.name == line.name; });
@@ -51,25 +45,18 @@ class MessageUpgrade::Builder {
         taken[static_cast<std::size_t>(same - old.begin())] = layout->fields.size();
         layout->fields.push_back(fieldFrom(type, *same, line));
       } else {
-        layout->fields.emplace_back();
-        appendBlank(line, layout->fields.back().blank);
+        const MessageSteps& missing = blank[layout->fields.size()];
+        appendBlank(missing, layout->fields.emplace_back().blank);
       }
     }
-    // What is left out is crossed together with what is left out before it: a field that takes no
-    // byte must take no time.
-    bool open = false;
     for (std::size_t k = 0; k < old.size(); ++k) {
-      layout->takes_bytes = layout->takes_bytes || !steps[k].empty();
+      const bool takes_bytes = !steps[k].empty();
+      layout->takes_bytes = layout->takes_bytes || takes_bytes;
       if (taken[k]) {
         layout->fields[*taken[k]].piece = layout->pieces.size();
+      }
+      if (taken[k] || takes_bytes) {  // a field that takes no byte must take no time
         layout->pieces.push_back(std::move(steps[k]));
-        open = false;
-      } else if (!steps[k].empty()) {
-        if (!std::exchange(open, true)) {
-          layout->pieces.emplace_back();
-        }
-        MessageSteps& piece = layout->pieces.back();
-        std::move(steps[k].begin(), steps[k].end(), std::back_inserter(piece));
       }
     }
     return layout;
@@ -79,9 +66,9 @@ class MessageUpgrade::Builder {
   Layout::Field fieldFrom(const std::string& type, const MessageDefinition::Line& old,
                           const MessageDefinition::Line& line) const {
     if (old.type != line.type || old.array != line.array) {
-      failUpgrade("field " + line.name + " of " + type + " is of the type " +
-                  printable(old.type + old.array, kLongestQuote) + " in the file, and here " +
-                  line.type + line.array);
+      throw std::invalid_argument("field " + line.name + " of " + type + " is of the type " +
+                                  printable(old.type + old.array, kLongestQuote) +
+                                  " in the file, and here " + line.type + line.array);
     }
     Layout::Field field;
     if (!sameLayout(line.type)) {
@@ -105,25 +92,14 @@ class MessageUpgrade::Builder {
                        [this](const auto& line) { return sameLayout(line.type); });
   }
 
-  void appendBlank(const MessageDefinition::Line& line, std::vector<std::uint8_t>& blank) const {
-    if (line.array == "[]") {
-      blank.resize(blank.size() + sizeof(std::uint32_t));
-      return;
-    }
-    const std::size_t number = line.array.empty() ? 1 : std::stoul(line.array.substr(1));
-    for (std::size_t k = 0; k < number; ++k) {
-      appendBlank(line.type, blank);
-    }
-  }
-
-  void appendBlank(const std::string& type, std::vector<std::uint8_t>& blank) const {
-    if (type == "string") {
-      blank.resize(blank.size() + sizeof(std::uint32_t));
-    } else if (MessageDefinition::isBuiltIn(type)) {
-      blank.resize(blank.size() + MessageDefinition::sizeOf(type));
-    } else {
-      for (const MessageDefinition::Line& line : to_.linesOf(type)) {
-        appendBlank(line, blank);
+  /// Zeros, and what is empty.
+  static void appendBlank(const MessageSteps& steps, std::vector<std::uint8_t>& blank) {
+    for (const MessageStep& step : steps) {
+      const bool is_array = step.kind == MessageStep::Kind::kArray && step.length;
+      const bool is_bytes = step.kind == MessageStep::Kind::kBytes;
+      blank.resize(blank.size() + (is_array ? 0 : is_bytes ? step.bytes : sizeof(std::uint32_t)));
+      for (std::uint32_t k = 0; is_array && k < *step.length; ++k) {
+        appendBlank(step.element, blank);
       }
     }
   }
@@ -165,7 +141,7 @@ class MessageUpgrade::Writer {
         append(&elements, sizeof elements);
       }
       if (elements > 0 && !field.elements->takes_bytes) {
-        failUpgrade("an array in it has elements without any field");
+        throw std::invalid_argument("an array in it has elements without any field");
       }
     }
     for (std::uint32_t k = 0; k < elements; ++k) {
@@ -175,7 +151,7 @@ class MessageUpgrade::Writer {
 
   void append(const void* data, std::size_t size) {
     if (bytes_.size() + size > MessageDefinition::kLargestMessage) {
-      failUpgrade("it is larger than a message can be");
+      throw std::invalid_argument("it is larger than a message can be");
     }
     const auto* begin = static_cast<const std::uint8_t*>(data);
     bytes_.insert(bytes_.end(), begin, begin + size);
@@ -193,10 +169,10 @@ std::vector<std::uint8_t> MessageUpgrade::apply(const std::uint8_t* data, std::s
   try {
     writer.append(*layout_, cursor);
   } catch (const std::out_of_range&) {
-    failUpgrade("a length in it is wrong");
+    throw std::invalid_argument("a length in it is wrong");
   }
   if (!cursor.atEnd()) {
-    failUpgrade("there is more in it than belongs to it");
+    throw std::invalid_argument("there is more in it than belongs to it");
   }
   return writer.take();
 }

@@ -3,14 +3,9 @@
 #include "self_awareness/ros/graph.h"
 
 namespace self_awareness::ros1 {
-namespace {
-
-constexpr char kPackage[] = "self_awareness/";
-
-}  // namespace
 
 bool isOwnType(const std::string& datatype) {
-  return datatype.rfind(kPackage, 0) == 0;
+  return datatype.rfind("self_awareness/", 0) == 0;
 }
 
 void Siblings::add(const std::string& node, const std::string& datatype) {

@@ -8,18 +8,13 @@
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::ros1 {
-namespace {
-
-using core::kNanosecondsPerSecond;
 
 // Times that messages must have come again from the one, after the other one.
 constexpr std::size_t kFewestReturns = 3;
 // Within so long they must have; what came before is forgotten [ns].
-constexpr std::int64_t kTogether = 60 * kNanosecondsPerSecond;
+constexpr std::int64_t kTogether = 60 * core::kNanosecondsPerSecond;
 // Who has not returned for so long, and for twice as long as the returns took, is gone [ns].
-constexpr std::int64_t kGone = 5 * kNanosecondsPerSecond;
-
-}  // namespace
+constexpr std::int64_t kGone = 5 * core::kNanosecondsPerSecond;
 
 /// What one sender says on a topic, by its name: it may be two.
 struct SenderWatch::Topic {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/locale/utf.hpp>
-#include <ctime>
 
 #include "self_awareness/core/stream/event.h"
 
@@ -81,12 +80,7 @@ std::string shortened(std::string_view bytes, std::size_t most) {
 }
 
 std::string utc(std::int64_t time) {
-  const std::time_t seconds = time / core::kNanosecondsPerSecond;
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &parts);
-  return text;
+  return core::inUtc(time, "%Y-%m-%d %H:%M:%S UTC");
 }
 
 }  // namespace self_awareness::ros1

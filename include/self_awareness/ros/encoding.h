@@ -21,9 +21,11 @@ namespace self_awareness::ros1 {
 struct Rename {
   std::string pattern;
   std::string name;  ///< \1 to \9 stand for what the groups of the pattern match
-};
 
-bool operator==(const Rename& a, const Rename& b);
+  friend bool operator==(const Rename& a, const Rename& b) {
+    return a.pattern == b.pattern && a.name == b.name;
+  }
+};
 
 /// Classes that the values of a numeric type field are put into (docs/monitor.md). A value that
 /// is no number has one of its own.
@@ -33,9 +35,11 @@ struct ValueClasses {
 
   std::size_t number = kFewest;  ///< that are wanted; there are fewer where values are the same
   std::vector<double> bounds;    ///< that a class begins with, ascending; empty: not learned yet
-};
 
-bool operator==(const ValueClasses& a, const ValueClasses& b);
+  friend bool operator==(const ValueClasses& a, const ValueClasses& b) {
+    return a.number == b.number && a.bounds == b.bounds;
+  }
+};
 
 /// Classes in words: "below 0.5", "0.5 to 2.1", "2.1 or more" and "NaN".
 std::vector<std::string> namesOfClasses(const std::vector<double>& bounds);
@@ -46,9 +50,11 @@ std::size_t classOf(double value, const std::vector<double>& bounds);
 struct ModeField {
   std::string topic;  ///< as the renames leave it
   std::string field;  ///< an integer, a bool or a string, not in an array; nested ones with dots
-};
 
-bool operator==(const ModeField& a, const ModeField& b);
+  friend bool operator==(const ModeField& a, const ModeField& b) {
+    return a.topic == b.topic && a.field == b.field;
+  }
+};
 
 /// How messages become events: the rules of the function f (paper, section IV-C; docs/method.md,
 /// section 1.1). The model holds them, so training and the monitor cannot disagree. Patterns are
@@ -106,9 +112,9 @@ struct Connection {
   std::string callerid;
   std::string topic;
   std::string datatype;
-  std::string definition;
+  std::string definition{};
   bool latching = false;
-  std::string md5sum;  ///< of the definition
+  std::string md5sum{};  ///< of the definition
 };
 
 /// Longest name of a topic, of a node, or of a type [bytes]. Longer ones are made up.
@@ -145,7 +151,7 @@ class ConnectionEncoder {
     return field_ != nullptr || listed_field_ != nullptr || tellsMode();
   }
   /// Id of the event that says that a message is held ready, in place of one that accept() does
-  /// not take (core/stream/latched.h); none: of lines for people, that says nothing.
+  /// not take (core::isLatched()); none: of lines for people, that says nothing.
   std::optional<core::EventId> latched();
   /// Id of a message if needsContent() is false.
   core::EventId id();

@@ -14,51 +14,39 @@ namespace self_awareness::ros1 {
 ///     const auto held = counts.lock(); // locked for this block
 template <typename T>
 class Guarded {
-  template <typename Data>
-  class BasicLock;
-
  public:
   /// Holds the mutex while it lives. It cannot be copied or moved away from its block.
-  using Lock = BasicLock<T>;
-  using ConstLock = BasicLock<const T>;
+  template <typename Data>
+  class Lock {
+   public:
+    Lock(std::mutex& mutex, Data& data) : lock_(mutex), data_(data) {}
+    Lock(const Lock&) = delete;
+    Lock& operator=(const Lock&) = delete;
 
-  Lock lock() { return Lock(mutex_, data_); }
-  ConstLock lock() const { return ConstLock(mutex_, data_); }
+    Data* operator->() const { return &data_; }
+    Data& operator*() const& { return data_; }
+    Data& operator*() const&& = delete;  // the reference would outlive the lock
+
+    /// Releases the mutex and waits until the condition holds or the time is over. The condition
+    /// is looked at with the mutex held, at first and after each notification.
+    /// @param condition called with the data
+    template <typename Condition>
+    void waitFor(std::condition_variable& changed, std::chrono::duration<double> time,
+                 Condition condition) {
+      changed.wait_for(lock_, time, [&] { return condition(data_); });
+    }
+
+   private:
+    std::unique_lock<std::mutex> lock_;
+    Data& data_;
+  };
+
+  Lock<T> lock() { return {mutex_, data_}; }
+  Lock<const T> lock() const { return {mutex_, data_}; }
 
  private:
   mutable std::mutex mutex_;
   T data_;
-};
-
-template <typename T>
-template <typename Data>
-class Guarded<T>::BasicLock {
- public:
-  BasicLock(const BasicLock&) = delete;
-  BasicLock& operator=(const BasicLock&) = delete;
-
-  Data* operator->() const { return &data_; }
-  Data& operator*() const& { return data_; }
-  Data& operator*() const&& = delete;  // the reference would outlive the lock
-
-  /// Releases the mutex; the data must not be touched after it.
-  void release() { lock_.unlock(); }
-
-  /// Releases the mutex and waits until the condition holds or the time is over. The condition
-  /// is looked at with the mutex held, at first and after each notification.
-  /// @param condition called with the data
-  template <typename Condition>
-  void waitFor(std::condition_variable& changed, std::chrono::duration<double> time,
-               Condition condition) {
-    changed.wait_for(lock_, time, [&] { return condition(data_); });
-  }
-
- private:
-  friend class Guarded;
-  BasicLock(std::mutex& mutex, Data& data) : lock_(mutex), data_(data) {}
-
-  std::unique_lock<std::mutex> lock_;
-  Data& data_;
 };
 
 }  // namespace self_awareness::ros1

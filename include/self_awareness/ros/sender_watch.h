@@ -7,16 +7,12 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "self_awareness/core/verdict/senders.h"
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/ros/encoding.h"
 
 namespace self_awareness::ros1 {
-
-/// Who sends, from a time [ns] on each, in the order of time.
-using SenderStates = std::vector<std::pair<std::int64_t, core::Senders>>;
 
 /// Watches over which connections messages come, live and in bags: events name their sender, which
 /// may be two (docs/monitor.md).

@@ -6,7 +6,6 @@
 #include "self_awareness/core/stream/clock.h"
 
 namespace self_awareness::core {
-namespace {
 
 // A replay may run faster than the robot did, but not a hundred times as fast.
 constexpr std::int64_t kFastestSimulation = 100;
@@ -19,8 +18,6 @@ bool wasSet(std::int64_t ros_advance, std::int64_t steady_advance, bool simulate
   return ros_advance < -kLatestEvent ||
          ros_advance > std::max(kSmallestSimulatedStep, kFastestSimulation * steady_advance);
 }
-
-}  // namespace
 
 bool ClockWatch::look(std::int64_t ros_now, std::int64_t steady_now, bool simulated) {
   const bool set =

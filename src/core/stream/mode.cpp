@@ -1,34 +1,8 @@
 #include "self_awareness/core/stream/mode.h"
 
 #include <algorithm>
-#include <string_view>
 
 namespace self_awareness::core {
-namespace {
-
-// No type field makes such a type: a field has no blank in its name.
-// Not a string: that is not ready yet where another file's constants have types of modes.
-constexpr std::string_view kBeginOfMode = "[mode: ";
-
-}  // namespace
-
-std::string typeOfMode(const std::string& datatype, const std::string& mode) {
-  return datatype + std::string(kBeginOfMode) + mode + "]";
-}
-
-std::string modeOf(const EventType& type) {
-  if (!tellsMode(type)) {
-    return "";
-  }
-  const std::size_t begin = type.type.find('[') + kBeginOfMode.size();
-  return type.type.substr(begin, type.type.size() - 1 - begin);
-}
-
-bool tellsMode(const EventType& type) {
-  const std::size_t begin = type.type.find('[');
-  return begin != std::string::npos && type.type.back() == ']' &&
-         type.type.compare(begin, kBeginOfMode.size(), kBeginOfMode) == 0;
-}
 
 void ModeTime::enter(std::optional<EventId> mode, std::int64_t stamp) {
   if (mode_ && mode != mode_) {

@@ -4,29 +4,10 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "self_awareness/core/stream/latched.h"
 #include "self_awareness/core/stream/listed.h"
 #include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core {
-
-std::string valueOf(const EventType& type) {
-  const std::size_t begin = type.type.find('[') + 1;
-  const bool is_value = begin > 0 && type.type.find('=', begin) != std::string::npos &&
-                        type.type.back() == ']' && !tellsList(type);
-  return is_value ? type.type.substr(begin, type.type.size() - begin - 1) : "";
-}
-
-std::optional<EventType> withoutValue(const EventType& type) {
-  const std::size_t end = type.type.find('[');
-  return end == std::string::npos
-             ? std::nullopt
-             : std::optional(EventType{type.source, type.scope, type.type.substr(0, end)});
-}
-
-std::string toString(const EventType& type) {
-  return (type.source.empty() ? "-" : type.source) + " " + type.scope + " " + type.type;
-}
 
 Vocabulary::Vocabulary(const std::vector<EventType>& types) {
   for (const EventType& type : types) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "self_awareness/core/verdict/name_pattern.h"
-
 namespace self_awareness::core {
 namespace {
 
@@ -91,11 +89,10 @@ std::vector<Acceptance> Acceptances::remove(const Acceptance& pattern) {
 }
 
 bool Acceptances::covers(const std::string& component, const std::string& topic, Kind kind) const {
-  Acceptance asked;
-  asked.kind = kind;
+  const Acceptance::Extent asked = Acceptance{"", "", kind}.extent();
   return std::any_of(list_.begin(), list_.end(), [&](const Acceptance& each) {
     return each.isAbout(component, topic) &&
-           (each.extent() == Acceptance::Extent::kAll || each.extent() == asked.extent());
+           (each.extent() == Acceptance::Extent::kAll || each.extent() == asked);
   });
 }
 

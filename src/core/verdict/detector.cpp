@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
-#include <string>
-#include <utility>
 
 namespace self_awareness::core {
 namespace {
@@ -30,13 +28,6 @@ void addEvidence(Judgement& judgement, const std::string& evidence) {
 
 }  // namespace
 
-void Detector::Parameters::validate() const {
-  persistence.validate();
-  if (settle_time < 0) {
-    throw std::invalid_argument("settle_time must be 0 or more");
-  }
-}
-
 Detector::Detector(std::unique_ptr<Judge> judge, std::int64_t window, const Parameters& parameters,
                    Handler handler)
     : judge_(std::move(judge)),
@@ -45,7 +36,9 @@ Detector::Detector(std::unique_ptr<Judge> judge, std::int64_t window, const Para
       windows_(window, *this),
       persistence_(parameters.persistence),
       new_mode_(parameters.persistence) {
-  parameters_.validate();
+  if (parameters_.settle_time < 0) {
+    throw std::invalid_argument("settle_time must be 0 or more");
+  }
 }
 
 bool Detector::add(const Event& event) {

@@ -1,13 +1,12 @@
 #include "self_awareness/core/verdict/mute.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <iterator>
 #include <set>
 #include <utility>
 
+#include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/dependents.h"
-#include "self_awareness/core/verdict/name_pattern.h"
 
 namespace self_awareness::core {
 

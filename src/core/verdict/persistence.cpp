@@ -6,7 +6,8 @@
 
 namespace self_awareness::core {
 
-void Persistence::Parameters::validate() const {
+Persistence::Persistence(const Parameters& parameters) : parameters_(parameters) {
+  const auto& [alarm_windows, alarm_of, hold_time] = parameters_;
   if (alarm_windows < 1 || alarm_windows > alarm_of) {
     throw std::invalid_argument("alarm_windows is " + std::to_string(alarm_windows) +
                                 ", but must lie between 1 and alarm_of, which is " +
@@ -15,10 +16,6 @@ void Persistence::Parameters::validate() const {
   if (hold_time < 0) {
     throw std::invalid_argument("hold_time must be 0 or more");
   }
-}
-
-Persistence::Persistence(const Parameters& parameters) : parameters_(parameters) {
-  parameters_.validate();
 }
 
 bool Persistence::add(bool abnormal, std::int64_t end, bool certain) {

@@ -1,12 +1,9 @@
 #include "self_awareness/core/verdict/sentence.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <ctime>
 #include <map>
-#include <utility>
 
 #include "core/verdict/name_list.h"
 #include "self_awareness/core/stream/event.h"
@@ -94,12 +91,7 @@ std::string ofAll(const Story& story) {
 }
 
 std::string utc(std::int64_t stamp) {
-  const auto seconds = static_cast<std::time_t>(stamp / kNanosecondsPerSecond);
-  std::tm time{};
-  gmtime_r(&seconds, &time);
-  std::array<char, 20> text{};
-  std::strftime(text.data(), text.size(), "%H:%M:%S UTC", &time);
-  return text.data();
+  return inUtc(stamp, "%H:%M:%S UTC");
 }
 
 /// "0.1 s", with no more digits than a gap needs.

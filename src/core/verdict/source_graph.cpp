@@ -1,8 +1,6 @@
 #include "self_awareness/core/verdict/source_graph.h"
 
 #include <limits>
-#include <map>
-#include <vector>
 
 namespace self_awareness::core {
 namespace {

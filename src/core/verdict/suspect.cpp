@@ -1,8 +1,8 @@
 #include "self_awareness/core/verdict/suspect.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
-#include <stdexcept>
 
 #include "core/verdict/name_list.h"
 
@@ -12,6 +12,14 @@ namespace {
 constexpr std::size_t kMostOfReason = 3;
 constexpr double kPause = 2;  // of who sends on [s]
 
+// In the order of Kind.
+constexpr std::array kNames{"silent",     "topic silent", "unanswered",     "slow",
+                            "fast",       "late",         "early",          "out of order",
+                            "never came", "stranger",     "not subscribed", "stale",
+                            "lossy",      "other size",   "stuck",          "busy machine",
+                            "all silent", "new mode",     "two senders",    "slower clock"};
+static_assert(kNames.size() == static_cast<std::size_t>(Kind::kSlowerClock) + 1);
+
 std::string number(std::size_t count, const std::string& of) {
   return std::to_string(count) + " " + of + (count == 1 ? "" : "s");
 }
@@ -19,61 +27,16 @@ std::string number(std::size_t count, const std::string& of) {
 }  // namespace
 
 std::string toString(Kind kind) {
-  switch (kind) {
-    case Kind::kSilent:
-      return "silent";
-    case Kind::kTopicSilent:
-      return "topic silent";
-    case Kind::kUnanswered:
-      return "unanswered";
-    case Kind::kSlow:
-      return "slow";
-    case Kind::kFast:
-      return "fast";
-    case Kind::kLate:
-      return "late";
-    case Kind::kEarly:
-      return "early";
-    case Kind::kOutOfOrder:
-      return "out of order";
-    case Kind::kNeverCame:
-      return "never came";
-    case Kind::kStranger:
-      return "stranger";
-    case Kind::kUnsubscribed:
-      return "not subscribed";
-    case Kind::kStale:
-      return "stale";
-    case Kind::kLossy:
-      return "lossy";
-    case Kind::kOtherSize:
-      return "other size";
-    case Kind::kStuck:
-      return "stuck";
-    case Kind::kBusyMachine:
-      return "busy machine";
-    case Kind::kAllSilent:
-      return "all silent";
-    case Kind::kNewMode:
-      return "new mode";
-    case Kind::kTwoSenders:
-      return "two senders";
-    case Kind::kSlowerClock:
-      return "slower clock";
-  }
-  throw std::invalid_argument("a kind without a name");
+  return kNames.at(static_cast<std::size_t>(kind));
 }
 
 std::optional<Kind> kindOf(const std::string& name) {
   if (name == "died") {  // as files of before have it
     return Kind::kSilent;
   }
-  for (int kind = 0; kind <= static_cast<int>(Kind::kSlowerClock); ++kind) {
-    if (toString(static_cast<Kind>(kind)) == name) {
-      return static_cast<Kind>(kind);
-    }
-  }
-  return std::nullopt;
+  const auto* const found = std::find(kNames.begin(), kNames.end(), name);
+  return found == kNames.end() ? std::nullopt
+                               : std::optional(static_cast<Kind>(found - kNames.begin()));
 }
 
 bool isMissing(Kind kind) {

@@ -65,7 +65,7 @@ class IndexReader {
     if (opOf(start.header) != Op::kFileHeader) {
       throw FormatError("it does not begin with a header");
     }
-    if (isEncrypted(start.header)) {
+    if (!findField(start.header, "encryptor").value_or("").empty()) {
       throw EncryptedError();
     }
     index_position_ = number<std::uint64_t>(start.header, "index_pos");

@@ -8,8 +8,6 @@ namespace self_awareness::ros1 {
 
 using namespace bag_records;  // NOLINT: the format's words, in this file only
 
-namespace {
-
 constexpr std::uint64_t kAtOnce = 8192;  // [bytes]
 // After a small message, more small ones follow: one call of the system reads many.
 constexpr std::uint64_t kAhead = 8192;  // [bytes]
@@ -17,8 +15,6 @@ constexpr std::uint64_t kAhead = 8192;  // [bytes]
 // most so many bytes, but for a single one.
 constexpr std::uint64_t kMostUnpacked = std::uint64_t{64} << 20U;
 constexpr std::size_t kMostChunks = 64;
-
-}  // namespace
 
 BagMessages::BagMessages(const std::string& path, std::vector<std::uint32_t> numbers,
                          std::uint64_t largest)

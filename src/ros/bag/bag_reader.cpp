@@ -13,7 +13,6 @@
 #include "recording_files.h"
 #include "self_awareness/ros/attribute_reader.h"
 #include "self_awareness/ros/own_output.h"
-#include "set_back.h"
 #include "version_of_bag.h"
 
 namespace self_awareness::ros1 {

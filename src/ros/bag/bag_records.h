@@ -7,6 +7,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -73,14 +74,21 @@ inline std::pair<std::string_view, std::string_view> takeField(std::string_view&
   return {field.substr(0, equals), field.substr(equals + 1)};
 }
 
-/// A field of a header.
-/// @throw FormatError if there is no field of that name
-inline std::string_view field(std::string_view header, std::string_view name) {
+/// A field of a header; none: there is no field of that name.
+inline std::optional<std::string_view> findField(std::string_view header, std::string_view name) {
   while (!header.empty()) {
     const auto [here, value] = takeField(header);
     if (here == name) {
       return value;
     }
+  }
+  return std::nullopt;
+}
+
+/// @throw FormatError if there is no field of that name
+inline std::string_view field(std::string_view header, std::string_view name) {
+  if (const auto value = findField(header, name)) {
+    return *value;
   }
   throw FormatError("no field " + std::string(name));
 }
@@ -94,17 +102,6 @@ Number number(std::string_view header, std::string_view name) {
 /// What kind of record a header is of; 0 and others may be no kind at all.
 inline Op opOf(std::string_view header) {
   return static_cast<Op>(number<std::uint8_t>(header, "op"));
-}
-
-/// Whether the header of a file says that what follows is encrypted.
-inline bool isEncrypted(std::string_view header) {
-  while (!header.empty()) {
-    const auto [name, value] = takeField(header);
-    if (name == "encryptor" && !value.empty()) {
-      return true;
-    }
-  }
-  return false;
 }
 
 /// The least that the record of a message takes [bytes].

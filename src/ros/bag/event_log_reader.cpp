@@ -17,7 +17,6 @@
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/EventLogStart.h"
 #include "self_awareness/core/evidence/tuning.h"
-#include "self_awareness/core/stream/latched.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/encoding_message.h"
 #include "self_awareness/ros/ros_time.h"
@@ -110,40 +109,38 @@ std::vector<core::Waiting> waitingIn(const self_awareness::EventLog& part,
 
 }  // namespace
 
-struct EventLogFile::Content {
+struct EventLogFile {
+  std::string path;
   BagIndex index;
   /// By recording: its messages, the start first, in the order in which they were written.
-  std::vector<std::vector<BagIndexEntry>> recordings;
+  std::vector<std::vector<BagIndexEntry>> recordings{};
 };
 
-EventLogFile::EventLogFile(const std::string& path) : path_(path) {
-  auto content = std::make_unique<Content>();
-  content->index = openBag(path);
-  const BagIndex& index = content->index;
+std::shared_ptr<const EventLogFile> openEventLog(const std::string& path) {
+  auto file = std::make_shared<EventLogFile>(EventLogFile{path, openBag(path)});
+  BagIndex& index = file->index;
   if (!isEventLog(path, index)) {
     throw BagError(path + ": no event log; name a bag as it is");
   }
   checkedVersion(path, index, kEventLogFile);
-  sortByPosition(content->index.entries);
+  sortByPosition(index.entries);
   for (const BagIndexEntry& entry : index.entries) {
     const Connection& connection = index.connections[entry.connection];
     if (!isOfEventLog(connection)) {
       continue;
     }
     if (holds<self_awareness::EventLogStart>(connection)) {
-      content->recordings.emplace_back();
+      file->recordings.emplace_back();
     }
-    if (content->recordings.empty()) {
+    if (file->recordings.empty()) {
       throw BagError(path +
                      ": the event log has no start: its beginning was cut off; take it as "
                      "it was written");
     }
-    content->recordings.back().push_back(entry);
+    file->recordings.back().push_back(entry);
   }
-  content_ = std::move(content);
+  return file;
 }
-
-EventLogFile::~EventLogFile() = default;
 
 std::optional<std::size_t> recordingsInEventLog(const std::string& path) {
   try {
@@ -166,21 +163,21 @@ std::optional<std::size_t> recordingsInEventLog(const std::string& path) {
 }
 
 EventLogReader::EventLogReader(const std::string& path, std::size_t recording)
-    : EventLogReader(std::make_shared<const EventLogFile>(path), recording) {}
+    : EventLogReader(openEventLog(path), recording) {}
 
 EventLogReader::EventLogReader(std::shared_ptr<const EventLogFile> file, std::size_t recording)
     : file_(std::move(file)) {
-  const std::string& path = file_->path_;
-  const EventLogFile::Content& content = *file_->content_;
-  if (recording >= content.recordings.size()) {
-    throw BagError(path + ": holds " + std::to_string(content.recordings.size()) +
+  const std::string& path = file_->path;
+  const BagIndex& index = file_->index;
+  if (recording >= file_->recordings.size()) {
+    throw BagError(path + ": holds " + std::to_string(file_->recordings.size()) +
                    " recordings, and none with the "
                    "number " +
                    std::to_string(recording + 1));
   }
-  LogMessages messages(path, content.index);
-  for (const BagIndexEntry& entry : content.recordings[recording]) {
-    const Connection& connection = content.index.connections[entry.connection];
+  LogMessages messages(path, index);
+  for (const BagIndexEntry& entry : file_->recordings[recording]) {
+    const Connection& connection = index.connections[entry.connection];
     if (holds<self_awareness::EventLogStart>(connection)) {
       const auto start = messages.read<self_awareness::EventLogStart>(entry);
       try {
@@ -212,8 +209,6 @@ EventLogReader::EventLogReader(std::shared_ptr<const EventLogFile> file, std::si
     summary_.dropped = last.dropped;
   }
 }
-
-EventLogReader::~EventLogReader() = default;
 
 std::set<core::SourceGraph::Subscription> lastingSubscriptions(const BagSummary& summary,
                                                                const EncodingRules& rules) {
@@ -266,7 +261,7 @@ EncodingRules EventLogReader::rulesOfNames(const EncodingRules& rules) const {
 
 std::set<core::EventType> EventLogReader::eventTypes(const EncodingRules& rules) const {
   const Encoder encoder(rulesOfNames(rules), nullptr);
-  LogMessages messages(summary_.path, file_->content_->index);
+  LogMessages messages(summary_.path, file_->index);
   std::set<core::EventType> types;
   for (const BagIndexEntry* entry : parts_) {
     for (const auto& type : messages.read<self_awareness::EventLog>(*entry).new_types) {
@@ -283,7 +278,7 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
                           const WaitingHandler& waiting) const {
   const Encoder encoder(rulesOfNames(rules), ids);
   const StampRange stamps(summary_, range);
-  LogMessages messages(summary_.path, file_->content_->index);
+  LogMessages messages(summary_.path, file_->index);
   std::vector<std::optional<core::EventType>> types;  // by id in the log; none: left out
   std::vector<std::optional<core::EventId>> known;    // the same
   std::vector<core::EventId> latched;                 // what lasts when the range begins

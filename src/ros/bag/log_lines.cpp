@@ -9,7 +9,6 @@
 #include "../text.h"
 #include "recording_files.h"
 #include "self_awareness/ros/stable_name.h"
-#include "set_back.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -43,9 +42,10 @@ std::vector<LogLine> lastLines(const LogQuery& query, const std::vector<BagIndex
        ++read) {
     --place;
     messages.read(asStored(*place, files.setBack()), content);
-    std::optional<SaidLine> said = readLogLine(content.data(), content.size());
+    std::optional<LogLine> said = readLogLine(content.data(), content.size());
     if (said && encoder.sourceOf(said->node) == query.node) {
-      lines.push_back({place->stamp, said->level, std::move(said->text)});
+      said->stamp = place->stamp;
+      lines.push_back(std::move(*said));
     }
   }
   std::reverse(lines.begin(), lines.end());
@@ -54,14 +54,14 @@ std::vector<LogLine> lastLines(const LogQuery& query, const std::vector<BagIndex
 
 }  // namespace
 
-std::optional<SaidLine> readLogLine(const std::uint8_t* data, std::size_t size) {
+std::optional<LogLine> readLogLine(const std::uint8_t* data, std::size_t size) {
   try {
     MessageCursor cursor(data, size);
     for (int i = 0; i < 3; ++i) {
       cursor.number<std::uint32_t>();  // sequence number and stamp of the header
     }
     cursor.string();  // frame
-    SaidLine line;
+    LogLine line;
     line.level = cursor.number<std::uint8_t>();
     line.node = stableName(std::string(cursor.string().substr(0, kLongestName)));
     std::string text(cursor.string().substr(0, kLongestLine));

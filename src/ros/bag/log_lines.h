@@ -14,7 +14,8 @@ namespace self_awareness::ros1 {
 constexpr char kMd5OfLog[] = "acffd30cd6b6de30f120938c17c593fb";
 
 /// A line that a node wrote to /rosout.
-struct SaidLine {
+struct LogLine {
+  std::int64_t stamp = 0;  ///< when the bag got it [ns]; 0: it is in none
   std::string node;        ///< its stable name, as the line says it
   std::uint8_t level = 0;  ///< as in rosgraph_msgs/Log: 1 DEBUG, 2 INFO, 4 WARN, 8 ERROR, 16 FATAL
   std::string text;        ///< printable, in one line, at most kLongestLine bytes of it
@@ -23,14 +24,7 @@ struct SaidLine {
 constexpr std::size_t kLongestLine = 500;
 
 /// What a serialized rosgraph_msgs/Log says; none: it is shorter than it says.
-std::optional<SaidLine> readLogLine(const std::uint8_t* data, std::size_t size);
-
-/// A line that a node wrote to /rosout.
-struct LogLine {
-  std::int64_t stamp = 0;  ///< when the bag got it [ns]
-  std::uint8_t level = 0;  ///< as in rosgraph_msgs/Log: 1 DEBUG, 2 INFO, 4 WARN, 8 ERROR, 16 FATAL
-  std::string text;        ///< printable, in one line, cut (SaidLine)
-};
+std::optional<LogLine> readLogLine(const std::uint8_t* data, std::size_t size);
 
 /// Messages of /rosout that are read for the last lines of a node, at most so many: others may
 /// write much where it writes nothing.

@@ -148,9 +148,6 @@ int shortestDelayBits(const std::vector<std::uint64_t>& delays) {
 }  // namespace
 
 void pack(const std::vector<core::Event>& events, self_awareness::EventLog& part) {
-  if (events.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw std::invalid_argument("too many events to pack together");
-  }
   part.events = static_cast<std::uint32_t>(events.size());
   if (events.empty()) {
     return;

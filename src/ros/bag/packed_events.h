@@ -12,8 +12,8 @@ namespace self_awareness::ros1 {
 // is above these as that many ones and a zero (Rice's code, the shortest for delays that are
 // exponential).
 
-/// Packs events whose stamps do not go back into a part.
-/// @throw std::invalid_argument if one does, or there are more than 2^32 - 1 events
+/// Packs events whose stamps do not go back into a part (EventLogPacker::kMostEvents).
+/// @throw std::invalid_argument if one does
 void pack(const std::vector<core::Event>& events, self_awareness::EventLog& part);
 /// The events again.
 /// @throw std::invalid_argument if the part's bytes are not what pack() makes

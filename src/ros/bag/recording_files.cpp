@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "open_bag.h"
-#include "set_back.h"
 
 namespace self_awareness::ros1 {
 namespace {

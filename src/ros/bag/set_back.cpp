@@ -1,9 +1,8 @@
-#include "set_back.h"
-
 #include <algorithm>
 #include <cstddef>
 #include <tuple>
 
+#include "recording_files.h"
 #include "self_awareness/core/stream/clock.h"
 
 namespace self_awareness::ros1 {

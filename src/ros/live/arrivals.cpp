@@ -4,12 +4,9 @@
 #include <iterator>
 
 namespace self_awareness::ros1 {
-namespace {
 
 // So long after that, a connection of no content is forgotten: it may be closed [ns].
 constexpr std::int64_t kForgotten = 10 * core::kNanosecondsPerSecond;
-
-}  // namespace
 
 Arrivals::Arrivals(std::uint32_t queue_size, std::function<void()> wake)
     : queue_size_(queue_size), wake_(std::move(wake)) {}

@@ -47,7 +47,7 @@ MasterRegistration::MasterRegistration(std::vector<std::string> services)
 }
 
 MasterRegistration::Master MasterRegistration::check() {
-  std::optional<XmlRpcValue> answer = askMaster("getPid");
+  std::optional<XmlRpcValue> answer = callMaster({{"getPid"}}).front();
   if (!answer || answer->getType() != XmlRpcValue::TypeInt) {
     return Master::kAway;
   }

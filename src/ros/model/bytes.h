@@ -26,9 +26,6 @@ namespace self_awareness::ros1 {
 /// Writes values.
 class ByteWriter {
  public:
-  template <typename Value>
-  using Ref = const Value&;  ///< of what fields() passes
-
   template <typename... Values>
   void operator()(const Values&... values) {
     (add(values), ...);
@@ -115,9 +112,6 @@ class ByteWriter {
 /// ask for no memory. Each function throws std::invalid_argument, which says what is wrong.
 class ByteReader {
  public:
-  template <typename Value>
-  using Ref = Value&;
-
   /// What a stranger's bytes may ask for [bytes].
   static constexpr std::size_t kMostMemory = std::size_t{1} << 30U;
 

@@ -1,9 +1,8 @@
-#include "model_check.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "../check.h"
+#include "model_parts.h"
 #include "self_awareness/core/evidence/channel/track.h"
 #include "self_awareness/ros/graph.h"
 

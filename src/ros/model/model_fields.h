@@ -10,10 +10,6 @@ namespace self_awareness::ros1 {
 // What a model file keeps of each struct, in this order. A later format adds fields behind the
 // others of its struct, by has(): `if (bytes.has(7)) bytes(...)`.
 
-/// Passes a struct to a ByteWriter, or takes it of a ByteReader.
-template <typename Bytes, typename Value>
-using Passed = typename Bytes::template Ref<Value>;
-
 /// Two stamps, of which the second one is not the earlier.
 inline void passSpan(ByteWriter& bytes, std::int64_t start, std::int64_t end) {
   bytes(start, std::max(start, end));
@@ -26,107 +22,60 @@ inline void passSpan(ByteReader& bytes, std::int64_t& start, std::int64_t& end) 
         "a recording of it ends before it starts, or at a time that cannot be");
 }
 
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, self_awareness::FileVersion> version) {
-  bytes(version.kind, version.format, version.oldest_reader, version.method, version.package);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::EventType> type) {
-  bytes(type.source, type.scope, type.type);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::SourceGraph::Edge> edge) {
-  bytes(edge.publisher, edge.topic, edge.subscriber);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, Rename> rename) {
-  bytes(rename.pattern, rename.name);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, ValueClasses> classes) {
-  bytes(classes.number, classes.bounds);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, ModeField> mode) {
-  bytes(mode.topic, mode.field);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, EncodingRules> rules) {
-  bytes(rules.source, rules.renames, rules.include_topics, rules.exclude_topics,
-        rules.include_sources, rules.exclude_sources, rules.type_fields, rules.classes,
-        rules.mode);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::RecordingInfo> recording) {
-  bytes(recording.bag);
-  passSpan(bytes, recording.start, recording.end);
-  bytes(recording.events, recording.robot_start, recording.fingerprint, recording.robot);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::paper::Calibration> calibration) {
-  bytes(calibration.threshold, calibration.method, calibration.auc, calibration.true_positive_rate,
-        calibration.false_positive_rate, calibration.normal_windows, calibration.faulty_windows,
-        calibration.false_alarms_per_hour, calibration.normal, calibration.faulty,
-        calibration.injected, calibration.stamp);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::paper::Histogram::Entry> entry) {
-  bytes(entry.bin, entry.count);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::evidence::Relation> relation) {
-  bytes(relation.watched, relation.reaches, relation.irregular, relation.spread, relation.starts,
-        relation.starts_needed);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::Calibration> calibration) {
-  bytes(calibration.method, calibration.limits.tracks, calibration.limits.firsts,
-        calibration.relations, calibration.budget, calibration.false_alarms_per_hour,
-        calibration.windows, calibration.recordings, calibration.stamp);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::evidence::LimitFinder::Recording::Part> part) {
-  bytes(part.windows, part.evidence, part.longest_gaps);
-}
-
-/// All are of the training: what others say is kept by a Calibration.
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::evidence::LimitFinder::Recording> recording) {
-  passSpan(bytes, recording.start, recording.end);
-  bytes(recording.robot_start, recording.robot, recording.windows, recording.parts,
-        recording.said);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::evidence::AttributeCounts> counts) {
-  bytes(counts.ages, counts.rises, counts.sizes, counts.steps, counts.repeats,
-        counts.longest_repeat);
-}
-
-/// What was left out is of its pairs.
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::evidence::Statistics::Type> type) {
-  bytes(type.events, type.gaps, type.gap_sum, type.longest_gaps, type.rate_sum, type.rate_squares,
-        type.attributes);
-}
-
-template <typename Bytes>
-void fields(Bytes& bytes, Passed<Bytes, core::evidence::Statistics::Recording> recording) {
-  passSpan(bytes, recording.start, recording.end);
-  bytes(recording.longest_silence, recording.longest_stall, recording.events,
-        recording.longest_gaps, recording.firsts, recording.robot_start, recording.robot);
+/// Passes the members of a struct to a ByteWriter, or takes them from a ByteReader.
+template <typename Bytes, typename Passed>
+void fields(Bytes& bytes, Passed& of) {
+  using Struct = std::remove_const_t<Passed>;
+  using core::evidence::LimitFinder;
+  using core::evidence::Statistics;
+  if constexpr (std::is_same_v<Struct, self_awareness::FileVersion>) {
+    bytes(of.kind, of.format, of.oldest_reader, of.method, of.package);
+  } else if constexpr (std::is_same_v<Struct, core::EventType>) {
+    bytes(of.source, of.scope, of.type);
+  } else if constexpr (std::is_same_v<Struct, core::SourceGraph::Edge>) {
+    bytes(of.publisher, of.topic, of.subscriber);
+  } else if constexpr (std::is_same_v<Struct, Rename>) {
+    bytes(of.pattern, of.name);
+  } else if constexpr (std::is_same_v<Struct, ValueClasses>) {
+    bytes(of.number, of.bounds);
+  } else if constexpr (std::is_same_v<Struct, ModeField>) {
+    bytes(of.topic, of.field);
+  } else if constexpr (std::is_same_v<Struct, EncodingRules>) {
+    bytes(of.source, of.renames, of.include_topics, of.exclude_topics, of.include_sources,
+          of.exclude_sources, of.type_fields, of.classes, of.mode);
+  } else if constexpr (std::is_same_v<Struct, core::RecordingInfo>) {
+    bytes(of.bag);
+    passSpan(bytes, of.start, of.end);
+    bytes(of.events, of.robot_start, of.fingerprint, of.robot);
+  } else if constexpr (std::is_same_v<Struct, core::paper::Calibration>) {
+    bytes(of.threshold, of.method, of.auc, of.true_positive_rate, of.false_positive_rate,
+          of.normal_windows, of.faulty_windows, of.false_alarms_per_hour, of.normal, of.faulty,
+          of.injected, of.stamp);
+  } else if constexpr (std::is_same_v<Struct, core::paper::Histogram::Entry>) {
+    bytes(of.bin, of.count);
+  } else if constexpr (std::is_same_v<Struct, core::evidence::Relation>) {
+    bytes(of.watched, of.reaches, of.irregular, of.spread, of.starts, of.starts_needed);
+  } else if constexpr (std::is_same_v<Struct, core::Calibration>) {
+    bytes(of.method, of.limits.tracks, of.limits.firsts, of.relations, of.budget,
+          of.false_alarms_per_hour, of.windows, of.recordings, of.stamp);
+  } else if constexpr (std::is_same_v<Struct, LimitFinder::Recording::Part>) {
+    bytes(of.windows, of.evidence, of.longest_gaps);
+  } else if constexpr (std::is_same_v<Struct, LimitFinder::Recording>) {
+    // All are of the training: what others say is kept by a Calibration.
+    passSpan(bytes, of.start, of.end);
+    bytes(of.robot_start, of.robot, of.windows, of.parts, of.said);
+  } else if constexpr (std::is_same_v<Struct, core::evidence::AttributeCounts>) {
+    bytes(of.ages, of.rises, of.sizes, of.steps, of.repeats, of.longest_repeat);
+  } else if constexpr (std::is_same_v<Struct, Statistics::Type>) {
+    // What was left out is of its pairs.
+    bytes(of.events, of.gaps, of.gap_sum, of.longest_gaps, of.rate_sum, of.rate_squares,
+          of.attributes);
+  } else {
+    static_assert(std::is_same_v<Struct, Statistics::Recording>);
+    passSpan(bytes, of.start, of.end);
+    bytes(of.longest_silence, of.longest_stall, of.events, of.longest_gaps, of.firsts,
+          of.robot_start, of.robot);
+  }
 }
 
 }  // namespace self_awareness::ros1

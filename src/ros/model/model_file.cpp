@@ -1,6 +1,5 @@
 #include "self_awareness/ros/model/model_file.h"
 
-#include <rosbag/bag.h>
 #include <rosbag/exceptions.h>
 
 #include <algorithm>

@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "model_check.h"
 #include "model_fields.h"
 #include "self_awareness/core/evidence/channel/track.h"
 

@@ -30,4 +30,15 @@ core::evidence::Statistics readCounts(ByteReader& bytes, const core::Vocabulary&
 void writePairs(const core::evidence::Statistics& statistics, core::EventId id, ByteWriter& bytes);
 void readPairs(ByteReader& bytes, core::EventId id, core::evidence::Statistics& statistics);
 
+// What cannot be in a model that was read, or fills memory or time. Each throws
+// std::invalid_argument, which says what it is.
+
+/// All but its tracks.
+void checkModel(const TrainedModel& model);
+/// Counts of one half of the training.
+void checkCounts(const core::evidence::Statistics& statistics);
+
+/// Leaves out tracks whose channel is null, and all that is said of them.
+void removeUnknownTracks(core::Model& model);
+
 }  // namespace self_awareness::ros1

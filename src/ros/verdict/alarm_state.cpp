@@ -121,16 +121,10 @@ void AlarmState::standDown(const std::string& message, std::int64_t now) {
 }
 
 void AlarmState::tell(const std::optional<core::Alarm>& alarm) {
-  message_.alarm = 0;
-  message_.kind.clear();
-  message_.component.clear();
-  message_.reason.clear();
-  if (alarm) {
-    message_.alarm = alarm->id;
-    message_.kind = core::toString(alarm->kind);
-    message_.component = alarm->culprit;
-    message_.reason = alarm->reason;
-  }
+  message_.alarm = alarm ? alarm->id : 0;
+  message_.kind = alarm ? core::toString(alarm->kind) : "";
+  message_.component = alarm ? alarm->culprit : "";
+  message_.reason = alarm ? alarm->reason : "";
 }
 
 void AlarmState::forgetWindow() {

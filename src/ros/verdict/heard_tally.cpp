@@ -4,18 +4,14 @@
 #include <utility>
 
 namespace self_awareness::ros1 {
-namespace {
 
 // Two reports may come one right after the other, when the level changes.
 constexpr double kShortestPeriod = 1e-3;  // [s]
 // Rates of topics are of so long at least, and of twice as long at most [ns].
 constexpr std::int64_t kOfRates = 10 * core::kNanosecondsPerSecond;
 
-}  // namespace
-
 void HeardTally::setTypes(const std::vector<core::EventType>& types) {
   components_.clear();
-  component_of_.clear();
   topics_.clear();
   topic_of_.clear();
   before_ = since_ = reported_at_.steady;
@@ -29,7 +25,6 @@ void HeardTally::setTypes(const std::vector<core::EventType>& types) {
     if (is_new) {
       components_.push_back({name, std::nullopt, 0});
     }
-    component_of_.push_back(index->second);
     const auto [topic, is_first] = topics.try_emplace({index->second, type.scope}, topics_.size());
     if (is_first) {
       topics_.push_back({type.scope, index->second, 0, 0});
@@ -40,7 +35,7 @@ void HeardTally::setTypes(const std::vector<core::EventType>& types) {
 
 void HeardTally::add(const core::Event& event) {
   ++events_;
-  const bool known = event.id < component_of_.size();
+  const bool known = event.id < topic_of_.size();
   if (event.id >= heard_types_.size()) {
     heard_types_.resize(event.id + 1, false);
   }
@@ -49,10 +44,11 @@ void HeardTally::add(const core::Event& event) {
     ++(known ? known_types_ : unknown_types_);
   }
   if (known) {
-    Component& component = components_[component_of_[event.id]];
+    Topic& topic = topics_[topic_of_[event.id]];
+    ++topic.events;
+    Component& component = components_[topic.component];
     component.last_heard = event.stamp;
     ++component.events;
-    ++topics_[topic_of_[event.id]].events;
   }
 }
 

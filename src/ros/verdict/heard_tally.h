@@ -77,8 +77,7 @@ class HeardTally {
   std::vector<std::size_t> topic_of_;  // index of the topic, by event id of the model
   std::int64_t before_ = 0;            // steady time [ns]
   std::int64_t since_ = 0;
-  std::vector<std::size_t> component_of_;  // index of the component, by event id of the model
-  std::vector<bool> heard_types_;          // by event id
+  std::vector<bool> heard_types_;  // by event id
   std::size_t known_types_ = 0;
   std::size_t unknown_types_ = 0;
   std::uint64_t events_ = 0;  // since the last report

@@ -26,6 +26,8 @@
 namespace self_awareness::ros1 {
 namespace {
 
+using self_awareness::SelfAwareness;
+
 /// A file that holds one message, for another start of the monitor.
 struct OneMessageFile {
   FileKind kind;
@@ -92,8 +94,11 @@ std::optional<Message> readOneMessage(const OneMessageFile& of, const std::strin
 constexpr OneMessageFile kFileOfAlarm{kStandingAlarmFile, "/standing_alarm",
                                       "the alarm in it is damaged", 1 << 20};
 
+bool isId(std::uint64_t id) {
+  return id > 0 && id < std::numeric_limits<std::int64_t>::max();
+}
+
 void checkAlarm(const self_awareness::StandingAlarm& standing) {
-  using self_awareness::SelfAwareness;
   const SelfAwareness& alarm = standing.alarm;
   check(alarm.level <= SelfAwareness::ERROR, "its level is none");
   check(alarm.suspects.size() <= core::kMostSuspects, "it has too many suspects");
@@ -101,27 +106,23 @@ void checkAlarm(const self_awareness::StandingAlarm& standing) {
     check(core::kindOf(suspect.kind).has_value(), "the kind of a suspect is none");
   }
   if (alarm.level == SelfAwareness::ERROR) {
-    check(alarm.alarm > 0 && alarm.alarm < std::numeric_limits<std::int64_t>::max(),
-          "its id is none");
+    check(isId(alarm.alarm), "its id is none");
     check(core::kindOf(alarm.kind).has_value(), "its kind is none");
   }
 }
-
-using self_awareness::SelfAwareness;
 
 // Names have 1000 bytes at most (kLongestName), and hardly any has more than a tenth of that.
 constexpr OneMessageFile kFileOfIncidents{kIncidentsFile, "/incidents",
                                           "the incidents in it are damaged", 16 << 20};
 
-bool isId(std::uint64_t id) {
-  return id > 0 && id < std::numeric_limits<std::int64_t>::max();
+bool areNames(const std::vector<std::string>& names) {
+  return std::all_of(names.begin(), names.end(),
+                     [](const std::string& name) { return name.size() <= kLongestName; });
 }
 
 void checkNames(const std::vector<std::string>& names) {
   check(names.size() <= core::Incident::kMostNamed, "it has too many components");
-  check(std::all_of(names.begin(), names.end(),
-                    [](const std::string& name) { return name.size() <= kLongestName; }),
-        "the name of a component is too long");
+  check(areNames(names), "the name of a component is too long");
 }
 
 void checkIncidents(const self_awareness::Incidents& incidents) {
@@ -150,9 +151,7 @@ void checkContent(const self_awareness::Acceptances& accepted) {
           "one names nobody");
     check(is_mode ? each.component.empty() && each.topic.empty() : each.together.empty(),
           "one is of a component and of a mode");
-    check(std::max({each.component.size(), each.topic.size(), each.by.size()}) <= kLongestName &&
-              std::all_of(each.together.begin(), each.together.end(),
-                          [](const std::string& name) { return name.size() <= kLongestName; }),
+    check(areNames({each.component, each.topic, each.by}) && areNames(each.together),
           "a name is too long");
     check(std::is_sorted(each.together.begin(), each.together.end()),
           "the components of a mode are in no order");
@@ -169,8 +168,7 @@ void writeStandingAlarm(const self_awareness::StandingAlarm& standing, const std
 std::optional<self_awareness::StandingAlarm> readStandingAlarm(const std::string& path) {
   std::optional<self_awareness::StandingAlarm> standing =
       readOneMessage<self_awareness::StandingAlarm>(kFileOfAlarm, path, checkAlarm);
-  return standing && standing->alarm.level == self_awareness::SelfAwareness::ERROR ? standing
-                                                                                   : std::nullopt;
+  return standing && standing->alarm.level == SelfAwareness::ERROR ? standing : std::nullopt;
 }
 
 std::vector<core::Suspect> fromMessages(const std::vector<self_awareness::Suspect>& messages,
@@ -284,14 +282,8 @@ std::optional<core::Acceptances> readAccepted(const std::string& path) {
   }
   core::Acceptances accepted;
   for (const self_awareness::Acceptance& one : message->accepted) {
-    core::Acceptance each;
-    each.component = one.component;
-    each.topic = one.topic;
-    each.kind = core::kindOf(one.kind);
-    each.together = one.together;
-    each.at = fromRosTime(one.at);
-    each.by = one.by;
-    accepted.add(each);
+    accepted.add({one.component, one.topic, core::kindOf(one.kind), one.together,
+                  fromRosTime(one.at), one.by});
   }
   return accepted;
 }

@@ -10,7 +10,6 @@
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/file_version.h"
 #include "self_awareness/ros/ros_time.h"
-#include "verdict_message.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -40,25 +39,12 @@ ResultBag::ResultBag(const std::string& path, const std::string& named)
     : bag_(path, BagWriter::Chunks::kCompressed, named) {}
 
 template <typename Message>
-void ResultBag::write(const std::string& topic, bool latching, std::int64_t now,
-                      const Message& message) {
+void ResultBag::write(const std::string& topic, std::int64_t now, const Message& message,
+                      bool latching) {
   if (!std::exchange(tells_version_, true)) {
     bag_.write(topicOf(kVersionTopic), inBag(now), versionOf(kResultBag));
   }
   bag_.write(topicOf(topic, latching), inBag(now), message);
-}
-
-void ResultBag::writeStatus(std::int64_t now, const self_awareness::SelfAwareness& status) {
-  write(privateTopic("status"), false, now, status);
-}
-
-void ResultBag::writeAlarm(std::int64_t now, const self_awareness::SelfAwareness& alarm) {
-  write(privateTopic("alarm"), true, now, alarm);
-}
-
-void ResultBag::writeDiagnostics(std::int64_t now,
-                                 const diagnostic_msgs::DiagnosticArray& diagnostics) {
-  write("/diagnostics", false, now, diagnostics);
 }
 
 bool ResultBag::isOne(const std::string& path) {
@@ -85,10 +71,13 @@ ReplayedMonitor::ReplayedMonitor(ResultBag& bag, const Model& model,
     : bag_(bag),
       model_(model),
       vocabulary_(types),
-      alarm_(
-          {[this](const self_awareness::SelfAwareness& status) { bag_.writeStatus(now_, status); },
-           [this](const self_awareness::SelfAwareness& alarm) { bag_.writeAlarm(now_, alarm); },
-           [this] { writeDiagnostics(); }}),
+      alarm_({[this](const self_awareness::SelfAwareness& status) {
+                bag_.write(privateTopic("status"), now_, status);
+              },
+              [this](const self_awareness::SelfAwareness& alarm) {
+                bag_.write(privateTopic("alarm"), now_, alarm, true);
+              },
+              [this] { writeDiagnostics(); }}),
       now_(start),
       heard_(moment()) {
   heard_.setTypes({types.begin(), types.begin() + static_cast<std::ptrdiff_t>(model.types)});
@@ -120,7 +109,7 @@ void ReplayedMonitor::writeDiagnostics() {
   state.calibrated = model_.calibrated;
   state.coverage = model_.coverage;
   state.take(alarm_, heard_.report(moment(), 0), now_);
-  bag_.writeDiagnostics(now_, toDiagnostics(state, ResultBag::kNode, now_));
+  bag_.write("/diagnostics", now_, toDiagnostics(state, ResultBag::kNode, now_));
 }
 
 }  // namespace self_awareness::ros1

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <diagnostic_msgs/DiagnosticArray.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -10,7 +8,6 @@
 #include "alarm_state.h"
 #include "diagnostic_status.h"
 #include "heard_tally.h"
-#include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/detector.h"
@@ -33,9 +30,9 @@ class ResultBag {
   explicit ResultBag(const std::string& path, const std::string& named = "");
 
   /// @param now recording time of the message [ns]; times before 1970 count as 1970
-  void writeStatus(std::int64_t now, const self_awareness::SelfAwareness& status);
-  void writeAlarm(std::int64_t now, const self_awareness::SelfAwareness& alarm);
-  void writeDiagnostics(std::int64_t now, const diagnostic_msgs::DiagnosticArray& diagnostics);
+  template <typename Message>
+  void write(const std::string& topic, std::int64_t now, const Message& message,
+             bool latching = false);
   /// Completes the file; nothing may be written after that.
   void close() { bag_.close(); }
 
@@ -44,9 +41,6 @@ class ResultBag {
   static bool isOne(const std::string& path);
 
  private:
-  template <typename Message>
-  void write(const std::string& topic, bool latching, std::int64_t now, const Message& message);
-
   BagWriter bag_;
   bool tells_version_ = false;  // what has been written says it
 };

@@ -1,5 +1,6 @@
 #include "status_round.h"
 
+#include <re2/re2.h>
 #include <ros/serialization.h>
 
 #include <algorithm>
@@ -89,20 +90,10 @@ ListsAre ListRound::next(const std::string& lists, double elapsed) {
   return ListsAre::kTold;
 }
 
-std::string withoutNumbers(const std::string& text) {
-  std::string words;
-  bool in_number = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto isDigit = [&](std::size_t at) {
-      return at < text.size() && text[at] >= '0' && text[at] <= '9';
-    };
-    const bool in_it = isDigit(i) || (in_number && text[i] == '.' && isDigit(i + 1));
-    if (!in_it || !in_number) {
-      words += in_it ? '0' : text[i];
-    }
-    in_number = in_it;
-  }
-  return words;
+std::string withoutNumbers(std::string text) {
+  static const re2::RE2 kNumber("[0-9]+(\\.[0-9]+)*");
+  re2::RE2::GlobalReplace(&text, kNumber, "0");
+  return text;
 }
 
 std::size_t bytesOf(const DiagnosticStatus& status) {

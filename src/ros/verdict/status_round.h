@@ -41,7 +41,7 @@ class ListRound {
 };
 
 /// A text whose numbers are left out: "silent for 2.31 s" and "silent for 14 s" say the same.
-std::string withoutNumbers(const std::string& text);
+std::string withoutNumbers(std::string text);
 
 /// Chooses which statuses of components go out with a report: what has changed at once, what is
 /// not OK every 5 s (two of them a report: they may be many), all else one after the other, as

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/verdict/sentence.h"
 #include "self_awareness/ros/ros_time.h"
 

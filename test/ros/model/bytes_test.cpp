@@ -19,8 +19,8 @@ struct Example {
 
 }  // namespace
 
-template <typename Passing>
-void fields(Passing& bytes, typename Passing::template Ref<Example> example) {
+template <typename Passing, typename Passed>
+void fields(Passing& bytes, Passed& example) {
   bytes(example.old);
   if (bytes.has(7)) {
     bytes(example.added);

@@ -45,9 +45,6 @@ struct Attributes {
 inline bool operator==(const Attributes& a, const Attributes& b) {
   return a.age == b.age && a.size == b.size && a.step == b.step && a.same == b.same;
 }
-inline bool operator!=(const Attributes& a, const Attributes& b) {
-  return !(a == b);
-}
 
 /// Class of an age [ns], kYoungest or more; older ages have larger classes. One class has all
 /// below 1 ms. From there to 36 min there are eight an octave (a step of 9 %), for stamps in the

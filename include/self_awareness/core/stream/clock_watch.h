@@ -5,13 +5,18 @@
 
 namespace self_awareness::core {
 
+/// Whether ROS time was set between two looks at it and at the steady clock, by how far both went
+/// meanwhile [ns].
+/// @param simulated whether ROS time comes from /clock, which may run at any pace
+bool wasSet(std::int64_t ros_advance, std::int64_t steady_advance, bool simulated);
+
 /// Notices that ROS time was set: NTP stepped the wall clock, a bag loops, a simulation was reset;
 /// that it stands still; and that nobody looked for a while. Compares how far ROS time and steady
 /// time went between two looks.
 class ClockWatch {
  public:
   /// A look at both clocks at one moment [ns].
-  /// @param simulated whether ROS time comes from /clock, which may run at any pace
+  /// @param simulated as of wasSet()
   /// @return true if ROS time was set since the last look
   bool look(std::int64_t ros_now, std::int64_t steady_now, bool simulated);
 

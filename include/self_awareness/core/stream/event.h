@@ -21,9 +21,6 @@ struct EventType {
 inline bool operator==(const EventType& a, const EventType& b) {
   return std::tie(a.source, a.scope, a.type) == std::tie(b.source, b.scope, b.type);
 }
-inline bool operator!=(const EventType& a, const EventType& b) {
-  return !(a == b);
-}
 inline bool operator<(const EventType& a, const EventType& b) {
   return std::tie(a.source, a.scope, a.type) < std::tie(b.source, b.scope, b.type);
 }
@@ -34,6 +31,15 @@ std::string valueOf(const EventType& type);
 /// An event type without the value of its type field, or what is told besides its messages; none:
 /// it says neither.
 std::optional<EventType> withoutValue(const EventType& type);
+
+/// The type of an event that says that a publisher holds a message ready: it latches, and sent it
+/// before it could be heard, as a map. When it came is when somebody began to listen, so it has no
+/// delay to anything: all that it tells is that it is there (docs/method.md, section 3.8). No
+/// other event type is called so.
+/// @param datatype of the message
+std::string typeOfLatched(const std::string& datatype);
+/// Whether an event type says that.
+bool isLatched(const EventType& type);
 
 /// Name of a component: its source, or its scope where the encoding leaves sources out.
 inline const std::string& componentOf(const std::string& source, const std::string& scope) {
@@ -60,6 +66,8 @@ constexpr double kNanosecondsPerHour = 3600e9;
 inline double toSeconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
 }
+/// A time since 1970 [ns] in UTC, as strftime() writes it.
+std::string inUtc(std::int64_t time, const char* format);
 /// Nobody waits for longer [ns]: 36 years.
 constexpr std::int64_t kLongestAge = std::int64_t{1} << 60;
 /// Seconds to whole nanoseconds: of a number of the method, or of a limit of silence.

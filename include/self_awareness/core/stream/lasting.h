@@ -11,7 +11,7 @@
 namespace self_awareness::core {
 
 /// What was told once and lasts: the mode of the robot (mode.h), and what is held ready
-/// (latched.h). A recording begins with it.
+/// (isLatched()). A recording begins with it.
 class Lasting {
  public:
   /// Takes in the next event.

@@ -37,7 +37,7 @@ class Vocabulary {
   const EventType& at(EventId id) const { return types_.at(id); }
   /// Whether an id is that of a type that tells the mode of the robot (mode.h), or kOtherMode.
   bool tellsMode(EventId id) const { return is(id, Says::kMode) || id == kOtherMode; }
-  /// Whether an id is that of a type that says that a message is held ready (latched.h).
+  /// Whether an id is that of a type that says that a message is held ready.
   bool isLatched(EventId id) const { return is(id, Says::kLatched); }
   /// Whether an id is that of a type that says what messages list (listed.h).
   bool tellsList(EventId id) const { return is(id, Says::kList); }

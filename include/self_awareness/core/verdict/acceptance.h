@@ -10,6 +10,15 @@
 
 namespace self_awareness::core {
 
+/// Whether a name is one that somebody has asked for.
+/// @param pattern a name, or its begin and a `*`; empty: any
+inline bool matchesPattern(const std::string& pattern, const std::string& name) {
+  if (pattern.empty() || pattern.back() != '*') {
+    return pattern.empty() || pattern == name;
+  }
+  return name.compare(0, pattern.size() - 1, pattern, 0, pattern.size() - 1) == 0;
+}
+
 /// What somebody takes as normal from now on (docs/live.md): it is no evidence any more.
 struct Acceptance {
   /// How much of what it names is accepted. A fault seldom comes alone: who is slow is late, too.
@@ -28,9 +37,9 @@ struct Acceptance {
   std::string topic;         ///< likewise; of kUnsubscribed, what it does not subscribe to
   std::optional<Kind> kind;  ///< none: all that it does
   /// Of kNewMode: the components that are off together, in order; then there is no name above.
-  std::vector<std::string> together;
+  std::vector<std::string> together{};
   std::int64_t at = 0;  ///< when it was accepted [ns of ROS time]
-  std::string by;       ///< who did
+  std::string by{};     ///< who did
 
   Extent extent() const;
   /// Whether it is about an event type: of a mode, whether its component may be off.

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "self_awareness/core/stream/vocabulary.h"
-#include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/detector.h"
-#include "self_awareness/core/verdict/silent.h"
+#include "self_awareness/core/verdict/shared_cause.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core {

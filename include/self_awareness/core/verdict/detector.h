@@ -12,10 +12,9 @@
 
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/stream/windows.h"
-#include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/judge.h"
 #include "self_awareness/core/verdict/persistence.h"
-#include "self_awareness/core/verdict/silent.h"
+#include "self_awareness/core/verdict/shared_cause.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::core {
@@ -58,9 +57,6 @@ class Detector : private WindowObserver {
     std::int64_t settle_time = 5000000000;  ///< after the first event, of all or of a type [ns]
     bool silence_is_abnormal = true;        ///< paper: a window without events scores 0
     UnknownEvents unknown = UnknownEvents::kWarn;  ///< a suspicion, or an alarm at once
-
-    /// @throw std::invalid_argument if a value is out of range.
-    void validate() const;
   };
   /// Told the verdict on a window.
   using Handler = std::function<void(const Verdict&)>;

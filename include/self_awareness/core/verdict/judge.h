@@ -10,9 +10,8 @@
 #include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/acceptance.h"
-#include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/senders.h"
-#include "self_awareness/core/verdict/silent.h"
+#include "self_awareness/core/verdict/shared_cause.h"
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/core/verdict/suspect.h"
 

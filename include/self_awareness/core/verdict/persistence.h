@@ -13,11 +13,9 @@ class Persistence {
     int alarm_windows = 3;                ///< k, 1 to n
     int alarm_of = 5;                     ///< n
     std::int64_t hold_time = 2000000000;  ///< [ns], 0 or more
-
-    /// @throw std::invalid_argument if a value is out of range.
-    void validate() const;
   };
 
+  /// @throw std::invalid_argument if a parameter is out of range
   explicit Persistence(const Parameters& parameters);
 
   /// Takes in the next window.

@@ -22,20 +22,10 @@ std::optional<std::size_t> recordingsInEventLog(const std::string& path);
 
 /// An event log whose index was read: once for all recordings in it, of which there may be
 /// hundreds.
-class EventLogFile {
- public:
-  /// @throw BagError if the file cannot be read, is no event log, is damaged or too new for this
-  /// version
-  explicit EventLogFile(const std::string& path);
-  ~EventLogFile();
-
- private:
-  friend class EventLogReader;
-  struct Content;
-
-  std::string path_;
-  std::unique_ptr<const Content> content_;
-};
+struct EventLogFile;
+/// @throw BagError if the file cannot be read, is no event log, is damaged or too new for this
+/// version
+std::shared_ptr<const EventLogFile> openEventLog(const std::string& path);
 
 /// What nodes subscribed to in a recording, from when its start had had its time (a minute, at
 /// most half of it) to its end. Empty of what was not heard live: the graph beside a bag does not
@@ -54,7 +44,6 @@ class EventLogReader {
   EventLogReader(const std::string& path, std::size_t recording);
   /// The same of a file whose index was read.
   EventLogReader(std::shared_ptr<const EventLogFile> file, std::size_t recording);
-  ~EventLogReader();
 
   using WaitingHandler = std::function<void(const core::Waiting&)>;
 
