@@ -106,10 +106,6 @@ class SimTimeTest(FolderCase):
                     '_alarm_windows:=10', '_alarm_of:=15',
                     '_recorder/directory:=' + self.path('recorder'))
 
-    def await_listening(self, listener: MonitorListener) -> None:
-        await_condition('the monitor subscribes', lambda: (
-            listener.value('monitor', 'subscriptions') == str(len(COMPONENTS))), 40)
-
     def check_heartbeats(self, listener: MonitorListener, clock_stands: bool = False) -> None:
         """None was left out since the first, and all are levels of a healthy monitor.
 
@@ -151,7 +147,8 @@ class SimTimeTest(FolderCase):
 
     def test_heartbeat_before_the_first_clock(self) -> None:
         with MonitorListener() as listener, self.start_monitor():
-            self.await_listening(listener)
+            await_condition('the monitor subscribes', lambda: (
+                listener.value('monitor', 'subscriptions') == str(len(COMPONENTS))), 40)
             array = rospy.wait_for_message('/diagnostics', DiagnosticArray, 10)
             self.assertEqual(array.header.stamp, rospy.Time(0), 'there is a /clock')
             listener.await_heartbeats(5)
