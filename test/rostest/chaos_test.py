@@ -60,12 +60,6 @@ class ChaosTest(TrainedCase):
         for name, topic in (('base', '/odom'), ('second', '/scan')):
             cls.addClassCleanup(talker(name, topic, 10).stop)
 
-    def judging_monitor(self, model: str = '', **parameters) -> Process:
-        """One that settles within a second."""
-        return self.monitor(model or self.trained, **dict(
-            {'detector': 'evidence', 'unknown': 'warn', 'settle_time': 1.0, 'subscribe': 'all'},
-            **parameters))
-
     def await_heard(self, listener: MonitorListener) -> None:
         listener.await_heard('/driver', '/base', '/second')
 
@@ -130,7 +124,7 @@ class ChaosTest(TrainedCase):
                         MadeUpPublishers(topics):
                     stop.wait(0.7)
 
-        with driver() as victim, self.judging_monitor(), MonitorListener() as listener:
+        with driver() as victim, self.trained_monitor(), MonitorListener() as listener:
             self.await_heard(listener)
             attack = threading.Thread(target=come_and_go)
             attack.start()
@@ -143,7 +137,7 @@ class ChaosTest(TrainedCase):
     # Too much
 
     def test_twenty_thousand_messages_a_second(self) -> None:
-        with driver() as victim, self.judging_monitor(unknown='ignore') as monitor, \
+        with driver() as victim, self.trained_monitor(unknown='ignore') as monitor, \
                 MonitorListener() as listener:
             self.await_heard(listener)
             with storm(rate=20000, topics=20):
@@ -164,14 +158,14 @@ class ChaosTest(TrainedCase):
                       [*operation(self.components, 120, seed), *bursts(burst, seed)])
             for seed in (1, 2)])
         with driver() as victim, storm(rate=10 * burst, burst=burst), \
-                self.judging_monitor(model=model, queue_size=1), MonitorListener() as listener:
+                self.trained_monitor(model, queue_size=1), MonitorListener() as listener:
             listener.await_diagnostics('monitor', OVERLOADED, DiagnosticStatus.WARN)
             listener.next_statuses(50)
             self.check_no_alarm(listener)
             self.check_alarm_names(listener, victim)
 
     def test_a_monitor_that_stood_still_raises_no_false_alarm(self) -> None:
-        with driver() as victim, self.judging_monitor() as monitor, \
+        with driver() as victim, self.trained_monitor() as monitor, \
                 MonitorListener() as listener:
             self.await_heard(listener)
             monitor.send(signal.SIGSTOP)
@@ -200,7 +194,7 @@ class ChaosTest(TrainedCase):
                 os.environ[name] = value
                 monitor.callback(os.environ.pop, name)
             self.write(step, '+0')
-            monitor.enter_context(self.judging_monitor())
+            monitor.enter_context(self.trained_monitor())
             self.await_heard(listener)
             for hours in ('+1', '-1'):
                 seen = len(listener.statuses)

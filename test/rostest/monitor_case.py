@@ -27,8 +27,8 @@ from self_awareness.workers import InProcess
 class Talker:
     """Publishes on a topic from this process at about 20 Hz, until the `with` block ends."""
 
-    def __init__(self, topic: str, message_class=String, **options) -> None:
-        self.publisher = rospy.Publisher(topic, message_class, queue_size=10, **options)
+    def __init__(self, topic: str, message_class=String) -> None:
+        self.publisher = rospy.Publisher(topic, message_class, queue_size=10)
         self.published = 0  # messages so far
         self._message = message_class()
         self._stop = threading.Event()
@@ -186,7 +186,7 @@ class TrainedCase(MonitorCase):
         super().setUp()
         shutil.copy(self.trained, self.path('model'))
 
-    def trained_monitor(self, **options: Any) -> Process:
+    def trained_monitor(self, model: str = '', **options: Any) -> Process:
         """A monitor by the default detector, which says what it never saw in training."""
-        return self.monitor(self.path('model'), **{'detector': 'evidence', 'unknown': 'warn',
-                                                   'subscribe': 'all', **options})
+        return self.monitor(model or self.path('model'), **{
+            'detector': 'evidence', 'unknown': 'warn', 'subscribe': 'all', **options})
