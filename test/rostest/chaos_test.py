@@ -29,10 +29,11 @@ MEGABYTE = 10**6
 OVERLOADED = 'overloaded: '
 
 
-def storm(**parameters: float) -> Process:
+def storm(rate: int, topics: int = 1, burst: int = 1, values: int = 0) -> Process:
     """storm.cpp: it publishes much, on /storm0 and so on."""
-    return ours('storm', '__name:=storm',
-                *['_{}:={}'.format(key, value) for key, value in parameters.items()])
+    # Each is given, since the master keeps those of the storm before.
+    return ours('storm', '__name:=storm', '_rate:={}'.format(rate), '_topics:={}'.format(topics),
+                '_burst:={}'.format(burst), '_values:={}'.format(values))
 
 
 def resident_bytes(pid: int) -> int:
@@ -158,7 +159,8 @@ class ChaosTest(TrainedCase):
                       [*operation(self.components, 120, seed), *bursts(burst, seed)])
             for seed in (1, 2)])
         with driver() as victim, storm(rate=10 * burst, burst=burst), \
-                self.trained_monitor(model, queue_size=1), MonitorListener() as listener:
+                self.monitor(model, detector='evidence', unknown='warn', subscribe='all',
+                             queue_size=1), MonitorListener() as listener:
             listener.await_diagnostics('monitor', OVERLOADED, DiagnosticStatus.WARN)
             listener.next_statuses(50)
             self.check_no_alarm(listener)

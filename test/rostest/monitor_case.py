@@ -186,7 +186,7 @@ class TrainedCase(MonitorCase):
         super().setUp()
         shutil.copy(self.trained, self.path('model'))
 
-    def trained_monitor(self, model: str = '', **options: Any) -> Process:
+    def trained_monitor(self, **options: Any) -> Process:
         """A monitor by the default detector, which says what it never saw in training."""
-        return self.monitor(model or self.path('model'), **{
-            'detector': 'evidence', 'unknown': 'warn', 'subscribe': 'all', **options})
+        return self.monitor(self.path('model'), **{'detector': 'evidence', 'unknown': 'warn',
+                                                   'subscribe': 'all', **options})
