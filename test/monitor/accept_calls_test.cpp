@@ -8,6 +8,7 @@
 #include "../await.h"
 #include "../in_folder.h"
 #include "../problem.h"
+#include "../times.h"
 #include "ros/verdict/kept_files.h"
 
 namespace self_awareness {
@@ -83,7 +84,7 @@ class AcceptCallsTest : public InFolder {
 
   const std::string model_ = path("robot.model");
   core::Vocabulary vocabulary_{{{"/driver", "/scan", "T"}, {"/base", "/odom", "T"}}};
-  ros1::Encoder encoder_{rules(), [](const core::EventType& /*type*/) { return 0; }};
+  ros1::Encoder encoder_{rules(), nullptr};
   std::optional<core::Alarm> alarm_;
   self_awareness::Incidents incidents_;
   std::map<core::EventId, std::uint64_t> unknown_;
@@ -302,6 +303,18 @@ TEST_F(AcceptCallsTest, AReloadDoesNotForgetWhatIsNotWrittenYet) {
   calls_.finish();
   calls_.read(model_);
   EXPECT_EQ(accepted(), "/driver (slow)") << "it is written";
+}
+
+TEST(OperatorCalls, ALoopIsAnsweredSometimes) {
+  OperatorCalls calls;
+  int answered = 0;
+  const std::int64_t start = 1000 * kSecond;
+  for (std::int64_t now = start; now < start + 60 * kSecond; now += kSecond / 100) {
+    answered += calls.admit("clear", "/loop", now) ? 1 : 0;
+  }
+  EXPECT_GE(answered, OperatorCalls::kAtOnce + 5);
+  EXPECT_LE(answered, OperatorCalls::kAtOnce + 6);
+  EXPECT_TRUE(calls.admit("reload", "/operator", start)) << "another service";
 }
 
 }  // namespace

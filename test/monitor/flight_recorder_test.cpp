@@ -221,16 +221,6 @@ TEST_F(FlightRecorderTest, WithoutADurationThereIsNone) {
   EXPECT_FALSE(exists(recorded_));
 }
 
-TEST_F(FlightRecorderTest, ADiskThatDoesNotTakeItIsReportedAndTheRestGoesOn) {
-  parameters_.directory = "/dev/full/recorder";
-  hear(0, 1);
-  recorder().dump();
-  ASSERT_TRUE(await([&] { return !recorder().report().files.error.empty(); }));
-  EXPECT_TRUE(has(recorder().report().files.error, "/dev/full/recorder"));
-  hear(1, 30);
-  EXPECT_GT(recorder().report().seconds, 29);
-}
-
 // SELF_AWARENESS_KILLS says how often (scripts/kill.sh).
 TEST_F(FlightRecorderTest, AKillLeavesWholeFilesOnly) {
   const char* number = std::getenv("SELF_AWARENESS_KILLS");

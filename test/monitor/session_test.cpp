@@ -183,17 +183,5 @@ TEST(Session, SaysWhoseDelaysAreNotWatchedNow) {
   EXPECT_TRUE(ByPaper(model()).disarmed().empty());
 }
 
-TEST(Session, EverNewEventTypesDoNotFillTheMemory) {
-  const ByPaper session(model());
-  ros1::ConnectionEncoder connection = connect(session, "/talker", "/joystick");
-  std::set<core::EventId> ids;
-  for (std::size_t i = 0; i < 2 * Session::kMostUnknownTypes; ++i) {
-    const std::vector<std::uint8_t> bytes = message(std::to_string(i));
-    ids.insert(connection.id(bytes.data(), bytes.size()));
-  }
-  EXPECT_EQ(session.vocabulary().size(), session.types().size() + Session::kMostUnknownTypes + 1);
-  EXPECT_EQ(session.vocabulary().at(*ids.rbegin()).scope, "(further topics)");
-}
-
 }  // namespace
 }  // namespace self_awareness

@@ -91,16 +91,13 @@ def test_no_text_that_is_installed_names_the_workspace(installed: Dict[str, str]
             if b'\0' not in text and any(place in text for place in places)] == []
 
 
-def test_the_programs_name_who_died(installed: Dict[str, str], model: Path) -> None:
-    printed = _program(installed, 'score', '--model', model, model.parent / 'cc1_4.bag')
-    alarm = printed.index('  60.')
-    assert '1. /player' in printed[alarm:], printed
-
-
-def test_the_pages_are_written(installed: Dict[str, str], model: Path, tmp_path: Path) -> None:
-    """They need files beside the Python modules."""
+def test_the_programs_name_who_died_and_write_pages(installed: Dict[str, str], model: Path,
+                                                    tmp_path: Path) -> None:
+    """Pages need files beside the Python modules."""
     bag = model.parent / 'cc1_4.bag'
-    _program(installed, 'score', '--model', model, bag, '--report', tmp_path / 'report.html')
+    printed = _program(installed, 'score', '--model', model, bag, '--report',
+                       tmp_path / 'report.html')
+    assert '1. /player' in printed[printed.index('  60.'):], printed
     _program(installed, 'diff', model, f'{bag}@62', '--html', tmp_path / 'diff.html')
     assert '/player (/scan) stopped sending' in (tmp_path / 'report.html').read_text()
     assert '/player' in (tmp_path / 'diff.html').read_text()

@@ -5,7 +5,6 @@
 #include <std_msgs/String.h>
 #include <visualization_msgs/MarkerArray.h>
 
-#include <algorithm>
 #include <string>
 
 #include "self_awareness/core/stream/event.h"
@@ -129,20 +128,6 @@ TEST(AttributeReader, ALatchingPublisherAlsoNumbersWhatItSendsToNewSubscribers) 
     EXPECT_EQ(read(plain, bytes).isAfterLoss(), number == 4);
     EXPECT_EQ(read(latching, bytes).step, Attributes::Step::kNotKnown);
   }
-}
-
-TEST(AttributeReader, WithoutAHeaderThereIsSizeAndContent) {
-  AttributeReader reader = readerOf<std_msgs::String>();
-  std_msgs::String message;
-  message.data = "on";
-  read(reader, serialized(message));
-  const Attributes again = read(reader, serialized(message));
-  EXPECT_EQ(again.age, Attributes::kNoAge);
-  EXPECT_EQ(again.step, Attributes::Step::kNotKnown);
-  EXPECT_TRUE(again.same);
-  message.data = "of";
-  EXPECT_FALSE(read(reader, serialized(message)).same);
-  EXPECT_EQ(read(reader, {}).size, core::sizeClass(0));
 }
 
 }  // namespace

@@ -107,18 +107,6 @@ class FileVersionTest : public ModelFileTest {
     return version;
   }
 
-  std::size_t eventsOf(const std::string& file) const {
-    std::size_t events = 0;
-    EventLogReader(file, 0).read(
-        rules_, [](const core::EventType& /*type*/) { return 0; }, {},
-        [&](const core::Event& /*event*/) { ++events; });
-    return events;
-  }
-
-  static std::string logError(const std::string& file) {
-    return problemOf<BagError>([&] { EventLogReader(file, 0); });
-  }
-
   EncodingRules rules_ = EncodingRules::defaults();
 };
 
@@ -174,7 +162,8 @@ TEST_F(FileVersionTest, AFileThatNeedsANewerReaderIsRefusedInOneLine) {
   EXPECT_TRUE(damaged.size() < 400 && !has(damaged, "\x1b")) << damaged;
 
   const std::string new_log = rewritten(log(), newer(kEventLogFile, kEventLogFile.format + 1));
-  EXPECT_TRUE(begins(logError(new_log), new_log + ": written by a newer self_awareness"));
+  EXPECT_TRUE(begins(problemOf<BagError>([&] { EventLogReader(new_log, 0); }),
+                     new_log + ": written by a newer self_awareness"));
   EXPECT_EQ(recordingsInEventLog(new_log), 1U) << "it is not taken for an ordinary bag";
   EXPECT_THROW(BagReader{new_log}, BagError);
   EXPECT_EQ(readFileVersion(new_log, kEventLogFile).package, "7.8.9");
@@ -203,7 +192,12 @@ TEST_F(FileVersionTest, AFileOfANewerFormatIsReadIfItSaysSo) {
       log(), newer(kEventLogFile, kEventLogFile.format),
       [](const std::string& /*type*/, Stored& stored) { addField(stored); }, true);
   EXPECT_EQ(recordingsInEventLog(new_log), 1U);
-  EXPECT_EQ(eventsOf(new_log), 50U);
+  std::size_t events = 0;
+  EventLogReader(new_log, 0)
+      .read(
+          rules_, [](const core::EventType& /*type*/) { return 0; }, {},
+          [&](const core::Event& /*event*/) { ++events; });
+  EXPECT_EQ(events, 50U);
   EXPECT_EQ(readFileVersion(new_log, kEventLogFile).format, kEventLogFile.format + 3);
 }
 

@@ -111,7 +111,7 @@ TEST(ChooseTopics, LeavesOutWhatRoscppCannotSubscribeTo) {
                                   std::string(), longest + "a", longest, std::string("/a_1/B")}) {
     graph.topics[name] = {"std_msgs/String", {"/anybody"}, {"/other"}};
   }
-  const Encoder encoder(EncodingRules(), [](const core::EventType& /*type*/) { return 0; });
+  const Encoder encoder(EncodingRules(), nullptr);
   EXPECT_EQ(chooseTopics(
                 graph, SubscribePolicy::kAll, {"/scan-front", "/scan"},
                 [&](const std::string& topic) { return encoder.includesTopic(topic); },

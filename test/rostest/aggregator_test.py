@@ -20,7 +20,7 @@ SUFFIXES = ('', ' (steps)')
 """Of the robot's monitor, and of the one in the namespace /steps."""
 STALE = 3
 ROUND_S = 50
-"""In which each source has its turn, however many there are: test/ros/verdict."""
+"""In which each source has its turn, however many there are: test/monitor."""
 
 
 class AggregatorTest(MonitorCase):

@@ -1,15 +1,16 @@
 #!/usr/bin/python3
-"""A node does not subscribe as it did, or logs its first error: the monitor says so."""
+"""A node does not subscribe as it did, or hangs, or logs its first error: the monitor says so."""
 
 import signal
+import sys
 
 import rospy
 import rostest
 from std_msgs.msg import String
 
-from live_system import (MonitorListener, again_if_disturbed, await_condition, operation,
-                         talker, write_bag)
-from monitor_case import MonitorCase, Talker, learned
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
+                         operation, ours, talker, write_bag)
+from monitor_case import Talker, TrainedCase, accept, base, learned
 from self_awareness.msg import SelfAwareness, Suspect
 
 NODE = '/connections'
@@ -18,6 +19,18 @@ START_TIME_S = 6.0
 HOUR_S = 3600.0
 LINE = 'the lens is gone'
 SAID = 'does not subscribe to /image, as it did in all 2 starts'
+HANGS = '; it answers, but its subscriber /viewer does not'
+# Without a queue_size, publish() waits until all have read.
+CAMERA = """
+import rospy
+from std_msgs.msg import String
+rospy.init_node('camera', disable_signals=True)
+publisher = rospy.Publisher('/image', String)
+rate = rospy.Rate(10)
+while True:
+    publisher.publish(200000 * 'x')
+    rate.sleep()
+"""
 
 
 def ignore(_: String) -> None:
@@ -25,9 +38,28 @@ def ignore(_: String) -> None:
 
 
 @again_if_disturbed
-class ConnectionsTest(MonitorCase):
+class ConnectionsTest(TrainedCase):
+    components = [('/camera', '/image', 0.1), ('/base', '/odom', 0.1)]
 
-    def trained(self) -> str:
+    def test_who_waits_for_a_subscriber_that_hangs_is_told_with_it(self) -> None:
+        with base(), Process(sys.executable, '-c', CAMERA), \
+                ours('talker', '__name:=viewer', '_input:=/image', '_output:=/seen') as viewer, \
+                self.trained_monitor(unknown='ignore'), MonitorListener() as listener:
+            listener.await_heard('/camera', '/base')
+            accept(component='/camera', topic='/image', kind='other size')  # the bags have none
+            listener.await_settled()
+            viewer.send(signal.SIGSTOP)
+            said = await_condition('the subscriber is told', lambda: next((
+                alarm for alarm in listener.alarms if HANGS in alarm.message), None), 40)
+            self.assertEqual((said.level, said.component, said.kind),
+                             (SelfAwareness.ERROR, '/camera', SelfAwareness.SILENT))
+            self.assertIn('/camera (/image) stopped sending at ', said.message)
+            listener.await_diagnostics('communication', HANGS)
+            viewer.send(signal.SIGCONT)
+            await_condition('it is over', lambda: (
+                listener.statuses[-1].level == SelfAwareness.OK), 40)
+
+    def subscribed_model(self) -> str:
         """A model that learned from two starts, in which this node subscribed to /image."""
         bags = [write_bag(self.path('{}.bag'.format(seed)), (
             (stamp + HOUR_S * seed, source, topic)
@@ -40,7 +72,7 @@ class ConnectionsTest(MonitorCase):
         return self.path('model')
 
     def test_who_does_not_subscribe_or_logs_an_error_is_named(self) -> None:
-        model = self.trained()
+        model = self.subscribed_model()
         camera = talker('camera', '/image', 10)
         self.addCleanup(camera.stop)
         subscriber = rospy.Subscriber('/image', String, ignore)

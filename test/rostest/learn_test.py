@@ -48,14 +48,6 @@ class LearnCase(FolderCase):
                        'hours:={}'.format(hours), 'start_up:=2', 'subscribe:=all',
                        'budget:=0.01')
 
-    def await_said(self, listener: MonitorListener, part: str, level: int,
-                   timeout: float) -> None:
-        """Waits until the last status says something."""
-        def says() -> bool:
-            statuses = listener.diagnostics('communication')
-            return bool(statuses) and part in statuses[-1].message and statuses[-1].level == level
-        await_condition(part, says, timeout)
-
     def await_log(self) -> None:
         """Waits until a log is being written."""
         await_condition('a log', lambda: glob.glob(self.model + '.logs/*.bag.active'), 30)
@@ -66,12 +58,13 @@ class LearnedTest(LearnCase):
 
     def test_from_nothing_to_an_alarm(self) -> None:
         with MonitorListener() as listener, self.learn(HOURS) as process:
-            self.await_said(listener, ', 1 start of the robot', DiagnosticStatus.OK, 60)
+            listener.await_next('communication', ', 1 start of the robot', DiagnosticStatus.OK, 60)
             self.await_log()
             # The last 20 s are lost.
             await_condition('30 s are recorded', lambda: recorded(listener) >= 0.5, 90)
             os.kill(pid_of('/self_awareness_recorder'), signal.SIGKILL)
-            self.await_said(listener, ', 2 starts of the robot', DiagnosticStatus.OK, 60)
+            listener.await_next('communication', ', 2 starts of the robot',
+                                DiagnosticStatus.OK, 60)
             self.assertGreater(recorded(listener), 0.0)
             self.assertIn('mended: ' + self.model + '.logs', process.output)
 
@@ -112,11 +105,12 @@ class NotLearnedTest(LearnCase):
             rospy.wait_for_service(FINISH, 60)
             finish = rospy.ServiceProxy(FINISH, Trigger)
             await_condition('it records', lambda: finish().success, 30)
-            self.await_said(listener, 'failed: the recordings are too short',
-                            DiagnosticStatus.WARN, 60)
+            listener.await_next('communication', 'failed: the recordings are too short',
+                                DiagnosticStatus.WARN, 60)
             await_condition('it records again', lambda: finish().success, 30)
             # The robot was not started again.
-            self.await_said(listener, ', 1 start of the robot', DiagnosticStatus.WARN, 30)
+            listener.await_next('communication', ', 1 start of the robot',
+                                DiagnosticStatus.WARN, 30)
             self.await_log()
         # Who ends it leaves complete logs; the recorder may end after the one who started it.
         await_condition('complete logs', lambda: not glob.glob(self.model + '.logs/*.active'), 30)

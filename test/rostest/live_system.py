@@ -209,34 +209,27 @@ def run_program(program: str, *arguments: str) -> str:
 
 
 class MonitorListener:
-    """Keeps all that a monitor says; needs rospy.init_node()."""
+    """Keeps all that a monitor says, which only grows; needs rospy.init_node()."""
 
     def __init__(self, name: str = '/self_awareness') -> None:
         self._name = name
-        self._lock = threading.Lock()
-        self._statuses: List[SelfAwareness] = []
-        self._alarms: List[SelfAwareness] = []
+        self.statuses: List[SelfAwareness] = []
+        self.alarms: List[SelfAwareness] = []
+        self.heartbeats: List[float] = []
+        """When the monitor's diagnostics came [s of time.monotonic()]."""
         self._awaited: Set[int] = set()  # alarms that await_alarm() returned
         self._diagnostics: List[DiagnosticStatus] = []
-        self._heartbeats: List[float] = []
         self._subscribers = [
-            rospy.Subscriber(name + '/status', SelfAwareness, self._keep(self._statuses)),
-            rospy.Subscriber(name + '/alarm', SelfAwareness, self._keep(self._alarms)),
+            rospy.Subscriber(name + '/status', SelfAwareness, self.statuses.append),
+            rospy.Subscriber(name + '/alarm', SelfAwareness, self.alarms.append),
             rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics),
         ]
 
-    def _keep(self, messages: list) -> Callable:
-        def on_message(message) -> None:
-            with self._lock:
-                messages.append(message)
-        return on_message
-
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
-        with self._lock:
-            self._diagnostics += [status for status in array.status
-                                  if task_of(self._name, status.name) is not None]
-            if any(task_of(self._name, status.name) == 'monitor' for status in array.status):
-                self._heartbeats.append(time.monotonic())
+        self._diagnostics += [status for status in array.status
+                              if task_of(self._name, status.name) is not None]
+        if any(task_of(self._name, status.name) == 'monitor' for status in array.status):
+            self.heartbeats.append(time.monotonic())
 
     def __enter__(self) -> 'MonitorListener':
         return self
@@ -246,38 +239,26 @@ class MonitorListener:
             subscriber.unregister()
 
     @property
-    def statuses(self) -> List[SelfAwareness]:
-        with self._lock:
-            return list(self._statuses)
-
-    @property
-    def alarms(self) -> List[SelfAwareness]:
-        with self._lock:
-            return list(self._alarms)
-
-    @property
     def errors(self) -> List[str]:
         """What alarms said."""
         return [alarm.message for alarm in self.alarms if alarm.level == SelfAwareness.ERROR]
 
-    @property
-    def heartbeats(self) -> List[float]:
-        """When the monitor's diagnostics came [s of time.monotonic()]."""
-        with self._lock:
-            return list(self._heartbeats)
-
     def diagnostics(self, task: str) -> List[DiagnosticStatus]:
         """All statuses so far of one task: 'communication', 'monitor' or a component."""
-        with self._lock:
-            return [status for status in self._diagnostics
-                    if task_of(self._name, status.name) == task]
+        return [status for status in self._diagnostics
+                if task_of(self._name, status.name) == task]
 
     def await_diagnostics(self, task: str, words: str, level: Optional[int] = None,
-                          since: int = 0, timeout: float = 40) -> DiagnosticStatus:
+                          timeout: float = 40, since: int = 0) -> DiagnosticStatus:
         """Waits for a status of a task with these words, after so many of them."""
         return await_condition('{} at level {}'.format(words, level), lambda: next(
             (status for status in self.diagnostics(task)[since:]
              if words in status.message and level in (None, status.level)), None), timeout)
+
+    def await_next(self, task: str, words: str, level: int,
+                   timeout: float = 40) -> DiagnosticStatus:
+        """Waits for a status of a task with these words, from now on."""
+        return self.await_diagnostics(task, words, level, timeout, len(self.diagnostics(task)))
 
     def value(self, task: str, key: str) -> Optional[str]:
         """A value of the task's last status; None if there is none yet."""
@@ -357,15 +338,22 @@ def write_bag(path: str, messages: Iterable[Tuple[float, str, str]]) -> str:
 
 def make_model(path: str, components: Iterable[Tuple[str, str, float]],
                source: str = 'callerid') -> None:
-    """Trains a model for the paper's detector on operation(), and writes it with THRESHOLD."""
+    """Writes a model for the paper's detector of operation()."""
     encoding = self_awareness.EncodingRules.defaults()
     encoding.source = source
     read = self_awareness.read_events(
         write_bag(path + '.bag', operation(components, 120, seed=1)), encoding)
-    learner = self_awareness.Learner(encoding=encoding, paper=True)
-    learner.count(RecordingEvents(read.event_types, read.stamps, read.ids))
+    save_paper_model(path, RecordingEvents(read.event_types, read.stamps, read.ids), encoding,
+                     THRESHOLD)
+
+
+def save_paper_model(path: str, recording: RecordingEvents, encoding: self_awareness.EncodingRules,
+                     threshold: float, **of_learner: Any) -> None:
+    """Trains a model for the paper's detector on a recording."""
+    learner = self_awareness.Learner(encoding=encoding, paper=True, **of_learner)
+    learner.count(recording)
     model = learner.model()
     calibration = self_awareness.PaperCalibration()
-    calibration.threshold = THRESHOLD
+    calibration.threshold = threshold
     model.paper_calibration = calibration
     model.save(path)

@@ -21,6 +21,7 @@ from self_awareness.msg import SelfAwareness
 
 _Kept = TypeVar('_Kept', bound=Process)
 
+LISTENER = os.path.join(os.path.dirname(os.path.abspath(__file__)), 'listener.py')
 COMPONENTS = (('/talker', '/from/talker', 0.05), ('/beside', '/from/beside', 0.5))
 """Source, topic and mean period [s]."""
 LONGEST_HEARTBEAT_S = 2.5
@@ -28,10 +29,6 @@ LONGEST_END_S = 3.0
 """After a signal."""
 LONGEST_SILENCE_S = 5.0
 """After a restart of the master."""
-
-
-def script(name: str) -> str:
-    return os.path.join(os.path.dirname(os.path.abspath(__file__)), name)
 
 
 def free_port() -> int:
@@ -103,11 +100,6 @@ class MasterTest(FolderCase):
                           '_alarm_windows:=10', '_alarm_of:=15', '_hold_time:=1.0',
                           '_recorder/directory:=' + self.path('recorder'))
 
-    def start_recorder(self) -> Process:
-        return self.start(path_of('record_events'), '__name:=recorder_1',
-                          '_min_space:=0', '_subscribe:=all',
-                          '_output:=' + self.path('log'))
-
     def start_component(self, name: str) -> Process:
         topic, period = next((topic, period) for source, topic, period in COMPONENTS
                              if source == name)
@@ -115,7 +107,7 @@ class MasterTest(FolderCase):
                           '_rate:={}'.format(1 / period))
 
     def start_listener(self) -> Listener:
-        return self.keep(Listener(sys.executable, script('listener.py'), env=self.environment))
+        return self.keep(Listener(sys.executable, LISTENER, env=self.environment))
 
     def master(self) -> rosgraph.Master:
         return rosgraph.Master('/master_test', master_uri=self.uri)
@@ -132,11 +124,6 @@ class MasterTest(FolderCase):
     def check_no_alarm(self, listener: Listener, since: float = 0) -> None:
         """There was none; a busy machine may have made single windows a suspicion."""
         self.assertEqual(listener.messages('alarm', since, level=SelfAwareness.ERROR), [])
-
-    def await_alarm(self, listener: Listener, since: float, source: str) -> None:
-        alarm = listener.await_message('alarm', since, level=SelfAwareness.ERROR)
-        self.assertEqual(alarm['suspects'][0], source)
-        listener.await_message('diagnostics', since, task=source, level=DiagnosticStatus.ERROR)
 
     def test_master_comes_late(self) -> None:
         monitor = self.start_monitor()
@@ -166,7 +153,10 @@ class MasterTest(FolderCase):
         self.check_no_alarm(listener)
         killed = time.monotonic()
         talker.send(signal.SIGKILL)
-        self.await_alarm(listener, killed, '/talker')
+        alarm = listener.await_message('alarm', killed, level=SelfAwareness.ERROR)
+        self.assertEqual(alarm['suspects'][0], '/talker')
+        listener.await_message('diagnostics', killed, task='/talker',
+                               level=DiagnosticStatus.ERROR)
         listener.await_message('diagnostics', killed, task='monitor', number=2)
 
         woken = time.monotonic()
@@ -187,7 +177,9 @@ class MasterTest(FolderCase):
     def test_the_nodes_end_whatever_the_master_does(self) -> None:
         for hangs in (True, False):
             master = self.start_master()
-            nodes = [self.start_monitor(), self.start_recorder()]
+            nodes = [self.start_monitor(), self.start(
+                path_of('record_events'), '__name:=recorder_1', '_min_space:=0',
+                '_subscribe:=all', '_output:=' + self.path('log'))]
             learner = self.start(path_of('learn'), '--subscribe', 'all', '__name:=learner',
                                  '_model:=' + self.path('learned'))
             listener = self.start_listener()

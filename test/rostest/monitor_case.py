@@ -14,7 +14,8 @@ from std_msgs.msg import String
 from std_srvs.srv import Trigger, TriggerResponse
 
 import self_awareness
-from live_system import Process, operation, ours, run_program, talker, write_bag
+from live_system import (Process, operation, ours, run_program, save_paper_model, talker,
+                         write_bag)
 from self_awareness import TrainedModel
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
@@ -26,8 +27,8 @@ from self_awareness.workers import InProcess
 class Talker:
     """Publishes on a topic from this process at about 20 Hz, until the `with` block ends."""
 
-    def __init__(self, topic: str, message_class=String, **options) -> None:
-        self.publisher = rospy.Publisher(topic, message_class, queue_size=10, **options)
+    def __init__(self, topic: str, message_class=String) -> None:
+        self.publisher = rospy.Publisher(topic, message_class, queue_size=10)
         self.published = 0  # messages so far
         self._message = message_class()
         self._stop = threading.Event()
@@ -118,7 +119,7 @@ class MonitorCase(FolderCase):
         super().setUp()
         self.addCleanup(forget_parameters)
 
-    def model(self, threshold: Optional[float] = 0.01, topics: Sequence[str] = ('/a',),
+    def model(self, threshold: float = 0.01, topics: Sequence[str] = ('/a',),
               type_fields: Optional[Dict[str, str]] = None, name: str = 'model',
               window: int = 10**8, sources: Optional[Dict[str, str]] = None) -> str:
         """A model of this process as it publishes on topics, std_msgs/String at 20 Hz.
@@ -132,22 +133,13 @@ class MonitorCase(FolderCase):
         encoding.type_fields = type_fields or {}
         # What rospy has to say of nodes that come and go is not what is tested.
         encoding.exclude_topics += ['/rosout']
-        learner = self_awareness.Learner(encoding=encoding, bin_size=500 * 10**6,
-                                         window=window, paper=True)
         types = [self_awareness.EventType((sources or {}).get(topic, rospy.get_name()), topic,
                                           'std_msgs/String') for topic in topics]
-        stamps, ids = [], []
-        for tick in range(1000):
-            for event, _ in enumerate(types):
-                stamps.append(10**12 + tick * 50 * 10**6 + event * 10**6)
-                ids.append(event)
-        learner.count(RecordingEvents(types, stamps, ids))
-        model = learner.model()
-        if threshold is not None:
-            calibration = self_awareness.PaperCalibration()
-            calibration.threshold = threshold
-            model.paper_calibration = calibration
-        model.save(self.path(name))
+        stamps = [10**12 + tick * 50 * 10**6 + event * 10**6
+                  for tick in range(1000) for event, _ in enumerate(types)]
+        recording = RecordingEvents(types, stamps, 1000 * list(range(len(types))))
+        save_paper_model(self.path(name), recording, encoding, threshold,
+                         bin_size=500 * 10**6, window=window)
         return self.path(name)
 
     def monitor(self, model: str, name: str = 'self_awareness', **parameters) -> Process:

@@ -87,10 +87,18 @@ class OperatorTest(TrainedCase):
                      if (each['component'], each['level']) == ('/driver', 'ERROR')]
             self.assertEqual((kept['id'], kept['over']), (opened.id, False))
             self.latest = None
-            with self.monitored(), MonitorListener() as listener:
+            with MonitorListener() as listener, self.monitored():
+                alarm = await_condition('its alarm is back', lambda: next(
+                    iter(listener.alarms), None), 5)
+                self.assertEqual((alarm.level, alarm.alarm, alarm.component),
+                                 (SelfAwareness.ERROR, again.last, '/driver'))
                 stands = self.await_incident('it stands again', over=False)
                 self.assertEqual((stands.id, stands.alarms), (opened.id, 2))
                 self.assertEqual(stands.recording, opened.recording)
+                # Longer than it settles, and than it holds an alarm whose cause is over.
+                self.assertEqual({(status.level, status.alarm)
+                                  for status in listener.next_statuses(50)},
+                                 {(SelfAwareness.ERROR, again.last)})
                 with driver():
                     self.await_incident('it is over at last', over=True, alarms=2)
                 listener.await_settled()
@@ -106,11 +114,6 @@ class OperatorTest(TrainedCase):
         rospy.wait_for_service(NODE + '/mute', 20)
         return rospy.ServiceProxy(NODE + '/mute', Mute)(**what)
 
-    def await_level(self, listener: MonitorListener, level: int, words: str) -> None:
-        """Waits for a status of the whole, from now on."""
-        listener.await_diagnostics('communication', words, level,
-                                   since=len(listener.diagnostics('communication')))
-
     def test_what_is_muted_is_judged_and_told_when_the_mute_ends(self) -> None:
         with base(), self.monitored() as monitor, \
                 MonitorListener() as listener, driver() as victim:
@@ -122,14 +125,14 @@ class OperatorTest(TrainedCase):
             alarm = listener.await_alarm()
             self.assertEqual(alarm.component, '/driver', 'it is judged, and for programs, told')
             self.await_incident('it is counted', over=False)
-            self.await_level(listener, DiagnosticStatus.OK, 'muted (/driv* until')
+            listener.await_next('communication', 'muted (/driv* until', DiagnosticStatus.OK)
             self.assertEqual(listener.diagnostics('/driver')[-1].level, DiagnosticStatus.OK)
             self.assertIn('by ' + rospy.get_name(), listener.value('monitor', 'mute 1') or '')
             self.assertNotIn('[ERROR]', monitor.output)
             # By the log: a starved machine can make another one suspect, who is told at once.
             await_condition('its time is over', lambda: 'mute ended, since its time is over: '
                             '/driv*; 1 alarms and' in monitor.output, 60)
-            self.await_level(listener, DiagnosticStatus.ERROR, 'stopped sending')
+            listener.await_next('communication', 'stopped sending', DiagnosticStatus.ERROR)
             self.assertIsNone(listener.value('monitor', 'mute 1'))
             await_condition('it is told', lambda: '[ERROR]' in monitor.output, 20)
             # What stands may be accepted, too.
@@ -161,14 +164,6 @@ class OperatorTest(TrainedCase):
         await_condition('{}: {}'.format(key, words), lambda: (
             words in (listener.value('communication', key) or '')), 20)
 
-    def await_normal(self, listener: MonitorListener) -> None:
-        """Of what the robot says: that the machine is busy is no matter here."""
-        def is_normal() -> bool:
-            status = listener.diagnostics('communication')[-1]
-            return (status.level != DiagnosticStatus.ERROR
-                    and 'unknown events' not in status.message)
-        await_condition('normal', is_normal, 20)
-
     def test_a_new_node_is_told_once_and_accepted_for_other_starts(self) -> None:
         file = self.path('model.accepted')
         with base():
@@ -178,7 +173,8 @@ class OperatorTest(TrainedCase):
                     await_condition('it is told', lambda: any(
                         alarm.level == SelfAwareness.WARN and '/joystick' in alarm.message
                         for alarm in listener.alarms), 20)
-                    self.await_normal(listener)
+                    await_condition('it is told no more', lambda: 'unknown events' not in (
+                        listener.diagnostics('communication')[-1].message), 20)
                     self.await_value(listener, 'not accepted, events so far', '/joystick on /joy')
                     said = accept(component='/joystick', topic='/joy', kind='stranger')
                     self.assertTrue(said.success, said.message)

@@ -38,14 +38,13 @@ class SimulatedRobot:
 
     def __init__(self, pace: float = 1) -> None:
         self.published = 0
+        self.silent = False  # no messages any more; the clock goes on
+        self.standing = False  # no /clock and no messages any more
         self._pace = pace
+        self.ahead = START_S - self._time()  # of the clock [s]
         self._clock = rospy.Publisher('/clock', Clock, queue_size=100)
         self._publishers = {topic: rospy.Publisher(topic, String, queue_size=100)
                             for _, topic, _ in COMPONENTS}
-        self._lock = threading.Lock()
-        self._ahead = START_S - self._time()
-        self._standing = False
-        self._silent = False
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run)
 
@@ -59,19 +58,6 @@ class SimulatedRobot:
         for publisher in [self._clock] + list(self._publishers.values()):
             publisher.unregister()
 
-    def set_clock_by(self, seconds: float) -> None:
-        with self._lock:
-            self._ahead += seconds
-
-    def fall_silent(self) -> None:
-        """No messages any more; the clock goes on."""
-        self._silent = True
-
-    def stop_clock(self) -> None:
-        """No /clock and no messages any more."""
-        with self._lock:
-            self._standing = True
-
     def _time(self) -> float:
         return self._pace * time.monotonic()
 
@@ -79,13 +65,12 @@ class SimulatedRobot:
         rng = random.Random(0)
         due = {topic: self._time() for topic in self._publishers}
         while not self._ended.wait(0.01):
-            with self._lock:
-                now, ahead, standing = self._time(), self._ahead, self._standing
-            if standing:
+            if self.standing:
                 continue
-            self._clock.publish(Clock(rospy.Time.from_sec(min(now + ahead, END_S))))
+            now = self._time()
+            self._clock.publish(Clock(rospy.Time.from_sec(min(now + self.ahead, END_S))))
             for _, topic, period in COMPONENTS:
-                if due[topic] <= now and not self._silent:
+                if due[topic] <= now and not self.silent:
                     self._publishers[topic].publish(String())
                     self.published += 1
                     due[topic] += period * rng.uniform(0.7, 1.3)
@@ -105,10 +90,6 @@ class SimTimeTest(FolderCase):
                     '_detector:=paper', '_subscribe:=model', '_settle_time:=1.0',
                     '_alarm_windows:=10', '_alarm_of:=15',
                     '_recorder/directory:=' + self.path('recorder'))
-
-    def await_listening(self, listener: MonitorListener) -> None:
-        await_condition('the monitor subscribes', lambda: (
-            listener.value('monitor', 'subscriptions') == str(len(COMPONENTS))), 40)
 
     def check_heartbeats(self, listener: MonitorListener, clock_stands: bool = False) -> None:
         """None was left out since the first, and all are levels of a healthy monitor.
@@ -151,7 +132,8 @@ class SimTimeTest(FolderCase):
 
     def test_heartbeat_before_the_first_clock(self) -> None:
         with MonitorListener() as listener, self.start_monitor():
-            self.await_listening(listener)
+            await_condition('the monitor subscribes', lambda: (
+                listener.value('monitor', 'subscriptions') == str(len(COMPONENTS))), 40)
             array = rospy.wait_for_message('/diagnostics', DiagnosticArray, 10)
             self.assertEqual(array.header.stamp, rospy.Time(0), 'there is a /clock')
             listener.await_heartbeats(5)
@@ -175,7 +157,7 @@ class SimTimeTest(FolderCase):
                 await_condition('3 s', lambda: len(listener.statuses) > seen + 30, 20)
                 self.check_no_alarm(listener)
                 self.assertFalse(any(s.settling for s in listener.statuses[seen:]))
-                robot.fall_silent()
+                robot.silent = True
                 suspect = listener.await_alarm().suspects[0]
                 self.assertEqual((suspect.source, suspect.scope), ('', '/scan'))
                 listener.await_diagnostics('/scan', '', DiagnosticStatus.ERROR)
@@ -189,7 +171,7 @@ class SimTimeTest(FolderCase):
                 seen = len(listener.statuses)
                 lines = monitor.output.count(CLOCK_WAS_SET)
                 steps = int(listener.value('monitor', 'times the clock was set'))
-                robot.set_clock_by(jump_s)
+                robot.ahead += jump_s
                 after = await_condition('windows after a jump of {:g} s'.format(jump_s), lambda: [
                     status for status in listener.statuses[seen:]
                     if abs((status.window_start - before.window_start).to_sec()) > 200], 20)
@@ -202,7 +184,7 @@ class SimTimeTest(FolderCase):
                 self.assertEqual(int(listener.value('monitor', 'times the clock was set')),
                                  steps + 1)
                 self.check_heartbeats(listener)
-            robot.stop_clock()
+            robot.standing = True
             listener.await_heartbeats(4)
             self.check_heartbeats(listener, clock_stands=True)
             self.await_clock_missed(listener)
@@ -220,7 +202,7 @@ class SimTimeTest(FolderCase):
             for jump_s in (300.0, -1000.0, 0.0):
                 seen = robot.published
                 await_condition('more', lambda: robot.published > seen + 50, 20)
-                robot.set_clock_by(jump_s)
+                robot.ahead += jump_s
         recorded = [read_events(log, EncodingRules.defaults(), recording=0).stamps
                     for log in glob.glob(self.path('run*.bag'))]
         self.assertEqual(len(recorded), 3)
@@ -232,13 +214,13 @@ class SimTimeTest(FolderCase):
         with MonitorListener() as listener, self.start_monitor() as monitor, \
                 SimulatedRobot() as robot:
             listener.await_settled()
-            robot.set_clock_by(END_S - START_S - 3600)
+            robot.ahead += END_S - START_S - 3600
             await_condition('windows of the last hour', lambda: (
                 listener.statuses[-1].window_start.to_sec() > END_S - 3600), 20)
-            robot.set_clock_by(3600)
+            robot.ahead += 3600
             await_condition('ROS time stands still', lambda: any(
                 NO_CLOCK.match(s.message) for s in listener.diagnostics('monitor')), 20)
-            robot.set_clock_by(START_S - END_S)
+            robot.ahead += START_S - END_S
             await_condition('windows of now', lambda: (
                 listener.statuses[-1].window_start.to_sec() < END_S - 3600), 20)
             self.assertTrue(monitor.running())

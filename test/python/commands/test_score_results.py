@@ -76,7 +76,7 @@ def test_programs_need_not_parse_words(results: Tuple[str, Dict[str, Any]],
 
 def test_times_are_those_of_the_recording_and_diagnostics_tell_of_all(
         results: Tuple[str, Dict[str, Any]], dead_laser: str) -> None:
-    """All else of it: test/monitor/replayed_monitor_test.cpp."""
+    """All else of it: test/ros/verdict/replayed_monitor_test.cpp."""
     path, _ = results
     with rosbag.Bag(path) as bag, rosbag.Bag(dead_laser) as recording:
         assert bag.get_compression_info().compression == 'lz4'

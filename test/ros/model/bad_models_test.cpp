@@ -41,18 +41,6 @@ class BadModelsTest : public ModelFileTest {
   }
 };
 
-TEST_F(BadModelsTest, AModelIsRefusedWhereverItIsCut) {
-  const std::string whole = plainModel();
-  ASSERT_EQ(errorOf(whole), "");
-  for (const std::size_t boundary : bag_bytes::boundaries(whole)) {
-    for (const std::size_t cut : {boundary - 1, boundary, boundary + 1}) {
-      if (cut < whole.size()) {
-        EXPECT_NE(errorOf(whole.substr(0, cut)), "") << cut;
-      }
-    }
-  }
-}
-
 TEST_F(BadModelsTest, AFlippedBitOrALyingLengthAsksForNoMemory) {
   const std::string whole = plainModel();
   const std::size_t first = bag_bytes::boundaries(whole)[1];

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <set>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -25,29 +24,11 @@ namespace {
 
 namespace fs = boost::filesystem;
 
-using core::evidence::LimitFinder;
-
-/// All that is compared of a part of a model.
-auto all(const core::RecordingInfo& of) {
-  return std::tie(of.bag, of.start, of.end, of.events, of.robot_start, of.fingerprint, of.robot);
-}
-auto all(const core::evidence::Track& of) {
-  return std::tie(of.channel, of.to, of.from);
-}
-auto all(const core::evidence::Relation& of) {
-  return std::tie(of.watched, of.reaches, of.irregular, of.spread, of.starts, of.starts_needed);
-}
-auto all(const LimitFinder::Recording::Part& of) {
-  return std::tie(of.windows, of.evidence, of.longest_gaps);
-}
-auto all(const LimitFinder::Recording& of) {
-  return std::tie(of.start, of.end, of.trained_on, of.windows, of.said, of.robot);
-}
-
-template <typename Each>
-bool same(const std::vector<Each>& one, const std::vector<Each>& other) {
-  return std::equal(one.begin(), one.end(), other.begin(), other.end(),
-                    [](const Each& a, const Each& b) { return all(a) == all(b); });
+/// All of a model but the counts of further training.
+std::vector<std::uint8_t> bytesOf(const TrainedModel& model) {
+  ByteWriter bytes;
+  writeModel(model, bytes);
+  return bytes.take();
 }
 
 TEST_F(ModelFileTest, AModelComesBackAsItWasSaved) {
@@ -72,13 +53,14 @@ TEST_F(ModelFileTest, AModelComesBackAsItWasSaved) {
   const std::vector<TrainedModel> loads{loadModel(path("m")), fromBytes(toBytes(model)),
                                         loadModel(path("m"), ModelCounts::kWatched)};
   for (const TrainedModel& loaded : loads) {
+    EXPECT_EQ(bytesOf(loaded), bytesOf(model));
+    // What is not written is equal in bytes, too.
     EXPECT_TRUE(loaded.encoding == model.encoding);
     EXPECT_EQ(loaded.window, model.window);
     EXPECT_EQ(loaded.stamp, model.stamp);
     EXPECT_EQ(loaded.threshold(), 1.25);
-    EXPECT_TRUE(same(loaded.recordings, model.recordings));
+    EXPECT_EQ(loaded.recordings.at(0).robot + loaded.findings.at(0).robot, "r7r7");
     EXPECT_TRUE(loaded.watched.halves == model.watched.halves);
-    EXPECT_TRUE(same(loaded.watched.tracks, model.watched.tracks));
     EXPECT_TRUE(loaded.tuning == model.tuning && loaded.watched.tuning == model.tuning);
     EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
     EXPECT_EQ(loaded.graph.hostOf("/a"), "base");
@@ -87,16 +69,9 @@ TEST_F(ModelFileTest, AModelComesBackAsItWasSaved) {
     const core::Calibration& calibration = loaded.calibration.value();
     EXPECT_TRUE(std::isnan(calibration.limits.tracks.at(0)));
     EXPECT_EQ(calibration.limits.tracks.at(1), 2.5);
-    EXPECT_EQ(calibration.method, "held-out");
     EXPECT_EQ(calibration.budget, 0.25);
-    EXPECT_EQ(calibration.windows, 1234U);
-    EXPECT_EQ(calibration.false_alarms_per_hour, 0.125);
-    EXPECT_TRUE(same(calibration.recordings, model.calibration->recordings));
-    EXPECT_TRUE(same(calibration.relations, model.calibration->relations));
-    EXPECT_TRUE(same(loaded.findings, model.findings));
-    for (std::size_t k = 0; k < model.findings.size(); ++k) {
-      EXPECT_TRUE(same(loaded.findings.at(k).parts, model.findings[k].parts)) << k;
-    }
+    EXPECT_EQ(calibration.recordings.size(), 1U);
+    EXPECT_EQ(calibration.relations.at(1).starts_needed, 3U);
     if (&loaded != &loads.back()) {
       EXPECT_TRUE(loaded.statistics == model.statistics);
       EXPECT_TRUE(loaded.evidence == model.evidence);
@@ -104,6 +79,13 @@ TEST_F(ModelFileTest, AModelComesBackAsItWasSaved) {
       EXPECT_EQ(loaded.evidence[1].delaysToAny(), model.watched.halves[1].delaysToAny());
     }
   }
+  // No more is read than is asked for.
+  EXPECT_EQ(loads.back().statistics.eventCount(0), model.statistics.eventCount(0));
+  EXPECT_EQ(loads.back().statistics.pairs(), 0U);
+  EXPECT_EQ(loads.back().evidence[0].size(), 0U);
+  const TrainedModel delays = loadModel(path("m"), ModelCounts::kDelays);
+  EXPECT_TRUE(delays.statistics == model.statistics);
+  EXPECT_EQ(delays.evidence[0].size(), 0U);
 }
 
 TEST_F(ModelFileTest, AModelForOneDetectorComesBackWithoutTheOthersCounts) {
@@ -186,20 +168,6 @@ TEST_F(ModelFileTest, AMissingMessageIsRefused) {
     EXPECT_EQ(error,
               path("damaged") + ": a damaged model file: its counts do not fit its event types");
   }
-}
-
-TEST_F(ModelFileTest, NoMoreIsReadThanIsAskedFor) {
-  const TrainedModel model = calibratedModel();
-  saveModel(model, path("m"));
-  const TrainedModel watched = loadModel(path("m"), ModelCounts::kWatched);
-  EXPECT_EQ(watched.vocabulary().types(), model.vocabulary().types());
-  EXPECT_EQ(watched.statistics.eventCount(0), model.statistics.eventCount(0));
-  EXPECT_EQ(watched.statistics.pairs(), 0U);
-  EXPECT_EQ(watched.evidence[0].size(), 0U);
-  EXPECT_TRUE(watched.watched.halves[0] == model.watched.halves[0]);
-  const TrainedModel delays = loadModel(path("m"), ModelCounts::kDelays);
-  EXPECT_TRUE(delays.statistics == model.statistics);
-  EXPECT_EQ(delays.evidence[0].size(), 0U);
 }
 
 TEST_F(ModelFileTest, DamagedPairsAreRefused) {

@@ -13,7 +13,10 @@ using self_awareness::SelfAwareness;
 
 class AlarmStateTest : public testing::Test {
  protected:
-  AlarmStateTest() { vocabulary_.intern({"/player", "/scan", "std_msgs/String"}); }
+  AlarmStateTest() {
+    vocabulary_.intern({"/player", "/scan", "std_msgs/String"});
+    vocabulary_.intern({"/arm", "/joints", "std_msgs/String"});
+  }
 
   enum class Level { kOk, kSuspicion, kAlarm };
   core::Verdict verdict(Level level, bool changed, const std::string& evidence = "") {
@@ -35,13 +38,18 @@ class AlarmStateTest : public testing::Test {
     return verdict;
   }
   void add(const core::Verdict& verdict) {
-    alarm_.add(verdict, vocabulary_, kWindow);
+    alarm_.add(verdict, vocabulary_, kWindow, {"", "/data/alarm_1.bag"});
     window_.start += kWindow;
   }
 
   core::Vocabulary vocabulary_;
   core::Window window_{kStart, {}};
-  AlarmState alarm_;
+  std::vector<std::string> told_;  // whom alarms named
+  int diagnostics_ = 0;            // how often they were asked for
+  AlarmState alarm_{{[](const SelfAwareness& /*status*/) {},
+                     [this](const SelfAwareness& alarm) { told_.push_back(alarm.component); },
+                     [this] { ++diagnostics_; }}};
+  const std::string file_ = "; events in /data/alarm_1.bag";
 };
 
 TEST_F(AlarmStateTest, NamesTheComputersThatFellSilentBeforeTheSuspects) {
@@ -50,7 +58,7 @@ TEST_F(AlarmStateTest, NamesTheComputersThatFellSilentBeforeTheSuspects) {
   silent.suspects.clear();
   add(silent);
   EXPECT_EQ(alarm_.message().message,
-            "everything on host base fell silent at 12:26:40 UTC: 2 nodes (overdue)");
+            "everything on host base fell silent at 12:26:40 UTC: 2 nodes (overdue)" + file_);
   EXPECT_EQ(alarm_.message().kind, SelfAwareness::ALL_SILENT);
   EXPECT_EQ(alarm_.message().component, "");
   EXPECT_EQ(alarm_.message().reason, "everything on host base fell silent: 2 nodes");
@@ -104,9 +112,10 @@ TEST_F(AlarmStateTest, AnAlarmKeepsWhatItSaysUntilItIsOver) {
   EXPECT_EQ(said.evidence, "overdue");
   ASSERT_EQ(said.suspects.size(), 1U);
   EXPECT_EQ(said.suspects[0].source, "/player");
-  EXPECT_EQ(said.message, "/player (/scan) stopped sending at 12:26:40 UTC (overdue)");
+  EXPECT_EQ(said.message, "/player (/scan) stopped sending at 12:26:40 UTC (overdue)" + file_);
   add(verdict(Level::kOk, true));
   EXPECT_FALSE(alarm_.stands());
+  EXPECT_EQ(said.message, "normal communication");
   EXPECT_EQ(said.alarm, id) << "that is over";
   EXPECT_EQ(said.evidence, "");
   EXPECT_TRUE(said.suspects.empty());
@@ -120,13 +129,14 @@ TEST_F(AlarmStateTest, CountsHowLongTheLevelHasStood) {
   add(verdict(Level::kSuspicion, true, "rate"));
   const std::int64_t changed = window_.start;  // the end of that window
   add(verdict(Level::kSuspicion, false, "rate"));
+  EXPECT_EQ(alarm_.message().message, "/player (/scan) stopped sending at 12:26:40 UTC (rate)")
+      << "no file is written for it";
   EXPECT_DOUBLE_EQ(alarm_.standsFor(changed + 3 * kWindow), 0.3);
   add(verdict(Level::kAlarm, true, "rate"));
   EXPECT_DOUBLE_EQ(alarm_.standsFor(window_.start), 0);
 }
 
 TEST_F(AlarmStateTest, NewSuspectsAreNamedInWordsWithTheWindowThatNamesThem) {
-  vocabulary_.intern({"/arm", "/joints", "std_msgs/String"});
   add(verdict(Level::kAlarm, true, "overdue"));
   const std::int64_t raised = window_.start;
   add(verdict(Level::kAlarm, false, "overdue"));
@@ -141,26 +151,13 @@ TEST_F(AlarmStateTest, NewSuspectsAreNamedInWordsWithTheWindowThatNamesThem) {
   add(second);
   EXPECT_EQ(alarm_.message().message,
             "/player (/scan) stopped sending at 12:26:40 UTC (overdue, rate); now also /arm on "
-            "/joints: never seen in training, 2 in this window");
+            "/joints: never seen in training, 2 in this window" +
+                file_);
   EXPECT_EQ(alarm_.message().suspects[1].since.toNSec(),
             static_cast<std::uint64_t>(window_.start));
   EXPECT_DOUBLE_EQ(alarm_.standsFor(raised + 3 * kWindow), 0.3) << "the alarm is the same";
   add(verdict(Level::kAlarm, false, "overdue"));
   EXPECT_EQ(alarm_.message().message, before);
-}
-
-TEST_F(AlarmStateTest, NamesTheFileOfItsEventsWhileItStands) {
-  const Circumstances recorded{"", "/data/alarm_1.bag"};
-  const auto saysFile = [&](Level level, const std::string& evidence) {
-    alarm_.add(verdict(level, true, evidence), vocabulary_, kWindow, recorded);
-    return alarm_.message().message.find("/data/alarm_1.bag") != std::string::npos;
-  };
-  EXPECT_FALSE(saysFile(Level::kSuspicion, "rate"));
-  EXPECT_TRUE(saysFile(Level::kAlarm, "rate"));
-  EXPECT_EQ(alarm_.message().message,
-            "/player (/scan) stopped sending at 12:26:40 UTC (rate); events in /data/alarm_1.bag");
-  EXPECT_TRUE(saysFile(Level::kAlarm, "")) << "also with windows that are normal";
-  EXPECT_FALSE(saysFile(Level::kOk, ""));
 }
 
 TEST_F(AlarmStateTest, StandsDownWithAReason) {
@@ -189,39 +186,26 @@ TEST_F(AlarmStateTest, AnAlarmStandsThroughAChangeOfModelUntilItIsTakenBack) {
   EXPECT_TRUE(alarm_.spoken());
 }
 
-core::Suspect silent(core::EventId id, std::int64_t onset, std::int64_t missed) {
-  core::Suspect suspect;
-  suspect.id = id;
-  suspect.abnormal = true;
-  suspect.onset = onset;
-  suspect.missed = missed;
-  return suspect;
-}
-
 TEST_F(AlarmStateTest, SaysThatAnotherOneIsToBlame) {
-  const core::Vocabulary vocabulary({{"/a", "/x", "T"}, {"/b", "/y", "T"}});
-  std::vector<std::string> alarms;
-  int diagnostics = 0;
-  AlarmState state(
-      {[](const self_awareness::SelfAwareness&) {},
-       [&](const self_awareness::SelfAwareness& alarm) { alarms.push_back(alarm.component); },
-       [&] { ++diagnostics; }});
-  core::Window window{kStart, {}};
-  core::Verdict verdict;
-  verdict.window = &window;
-  verdict.alarm = verdict.abnormal = verdict.changed = true;
-  verdict.evidence = "overdue";
-  const core::Suspect first = silent(0, kStart - kWindow, kStart);
-  verdict.suspects = {first};
-  state.add(verdict, vocabulary, kWindow);
-  verdict.changed = false;
-  state.add(verdict, vocabulary, kWindow);
-  EXPECT_EQ(alarms, (std::vector<std::string>{"/a"}));
-  verdict.suspects = {silent(1, kStart - 9 * kWindow, kStart - 2 * kWindow), first};
-  verdict.new_suspects = {verdict.suspects[0]};
-  state.add(verdict, vocabulary, kWindow);
-  EXPECT_EQ(alarms, (std::vector<std::string>{"/a", "/b"}));
-  EXPECT_EQ(diagnostics, 2);
+  core::Verdict both = verdict(Level::kAlarm, true, "overdue");
+  core::Suspect& player = both.suspects[0];
+  player.abnormal = true;
+  player.onset = kStart - kWindow;
+  player.missed = kStart;
+  add(both);
+  both.changed = false;
+  add(both);
+  EXPECT_EQ(told_, (std::vector<std::string>{"/player"}));
+  core::Suspect arm;
+  arm.id = 1;
+  arm.abnormal = true;
+  arm.onset = kStart - 9 * kWindow;
+  arm.missed = kStart - 2 * kWindow;
+  both.suspects.insert(both.suspects.begin(), arm);
+  both.new_suspects = {arm};
+  add(both);
+  EXPECT_EQ(told_, (std::vector<std::string>{"/player", "/arm"}));
+  EXPECT_EQ(diagnostics_, 2);
 }
 
 }  // namespace

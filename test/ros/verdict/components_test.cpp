@@ -59,7 +59,7 @@ class ComponentsTest : public testing::Test {
 
   CommunicationState state_;
   Graph graph_;
-  const Encoder encoder_{EncodingRules(), [](const core::EventType&) { return core::EventId{0}; }};
+  const Encoder encoder_{EncodingRules(), nullptr};
 };
 
 TEST_F(ComponentsTest, SaysHowEachOneIs) {

@@ -7,8 +7,7 @@
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::int64_t kSteady = 5000 * kSecond;      // steady time at the start
-constexpr std::int64_t kRos = 1600000000L * kSecond;  // ROS time at the start
+constexpr std::int64_t kSteady = 5000 * kSecond;  // steady time at the start
 const std::vector<core::EventType> kTypes = {{"/player", "/scan", "T"},
                                              {"/slam", "/pose", "T"},
                                              {"/player", "/odom", "T"},
@@ -20,16 +19,16 @@ class HeardTallyTest : public testing::Test {
 
   HeardReport report(double seconds, std::uint64_t dropped = 0) {
     const auto later = static_cast<std::int64_t>(seconds * kSecond);
-    return tally_.report({kRos + later, kSteady + later, cpu_}, dropped);
+    return tally_.report({kStart + later, kSteady + later, cpu_}, dropped);
   }
 
   std::int64_t cpu_ = 7 * kSecond;  // processor time of the process
-  HeardTally tally_{{kRos, kSteady, cpu_}};
+  HeardTally tally_{{kStart, kSteady, cpu_}};
 };
 
 TEST_F(HeardTallyTest, CountsByComponent) {
   for (int i = 0; i < 6; ++i) {
-    tally_.add({kRos + i * kSecond / 10, static_cast<core::EventId>(i % 3)});
+    tally_.add({kStart + i * kSecond / 10, static_cast<core::EventId>(i % 3)});
   }
   const HeardReport heard = report(2);
   ASSERT_EQ(heard.components.size(), 3U);
@@ -40,10 +39,10 @@ TEST_F(HeardTallyTest, CountsByComponent) {
   EXPECT_DOUBLE_EQ(heard.components.at("/slam").last_heard.value(), 1.6);
   EXPECT_EQ(heard.components.at("/replayed").last_heard, std::nullopt);
   EXPECT_DOUBLE_EQ(heard.rate, 3);
-  tally_.add({kRos, 0});
+  tally_.add({kStart, 0});
   tally_.setTypes({{"/base", "/odom", "T"}});
   EXPECT_DOUBLE_EQ(report(3).rate, 1) << "of the monitor as a whole";
-  tally_.add({kRos, 4});
+  tally_.add({kStart, 4});
   const HeardReport unknown = report(3);
   EXPECT_DOUBLE_EQ(unknown.rate, 1000) << "at the same moment: within 1 ms at least";
   ASSERT_EQ(unknown.components.size(), 1U) << "another model has other components";
@@ -53,11 +52,11 @@ TEST_F(HeardTallyTest, CountsByComponent) {
 
 TEST_F(HeardTallyTest, CountsTheEventTypesThatTheModelKnowsAndTheOthers) {
   for (const core::EventId id : {0U, 0U, 2U, 4U, 9U, 9U}) {
-    tally_.add({kRos, id});
+    tally_.add({kStart, id});
   }
   report(1);
-  tally_.add({kRos, 0});
-  tally_.add({kRos, 5});
+  tally_.add({kStart, 0});
+  tally_.add({kStart, 5});
   const HeardReport heard = report(2);
   EXPECT_EQ(heard.known_types, 2U);
   EXPECT_EQ(heard.unknown_types, 3U);
@@ -66,7 +65,7 @@ TEST_F(HeardTallyTest, CountsTheEventTypesThatTheModelKnowsAndTheOthers) {
 }
 
 TEST_F(HeardTallyTest, EachReportCountsFromTheOneBefore) {
-  tally_.add({kRos, 0});
+  tally_.add({kStart, 0});
   cpu_ += kSecond / 2;
   const HeardReport first = report(1, 5);
   EXPECT_DOUBLE_EQ(first.cpu_share, 0.5);
@@ -84,7 +83,7 @@ TEST_F(HeardTallyTest, EachReportCountsFromTheOneBefore) {
 }
 
 TEST_F(HeardTallyTest, AClockStepForgetsWhenEachWasHeard) {
-  tally_.add({kRos, 0});
+  tally_.add({kStart, 0});
   tally_.onClockStep();
   const HeardReport heard = report(1);
   EXPECT_EQ(heard.components.at("/player").last_heard, std::nullopt);
@@ -96,9 +95,9 @@ TEST_F(HeardTallyTest, AClockStepForgetsWhenEachWasHeard) {
 TEST_F(HeardTallyTest, RatesOfTopicsAreOfTheLastTenToTwentySeconds) {
   for (int second = 1; second <= 25; ++second) {
     for (int i = 0; i < (second <= 10 ? 4 : 2); ++i) {
-      tally_.add({kRos, 0});
+      tally_.add({kStart, 0});
     }
-    tally_.add({kRos, 2});
+    tally_.add({kStart, 2});
     const HeardReport heard = report(second);
     EXPECT_DOUBLE_EQ(heard.components.at("/player").rates.at("/odom"), 1) << second;
     if (second <= 10) {
