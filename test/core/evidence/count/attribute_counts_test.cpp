@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../attributed.h"
+#include "../recordings.h"
 #include "core/evidence/count/age_level.h"
 #include "core/evidence/count/repeats.h"
 
@@ -105,15 +105,6 @@ TEST(AttributeCounts, AStartIsThatOfTheRecording) {
   addAll(trainer, messages(kA, kStart, kStart + 100 * kSecond, {}));
   trainer.finish();
   EXPECT_EQ(counts.type(kA).attributes.counted(), 1000U);
-}
-
-TEST(ClassCounts, QuantilesAreClasses) {
-  const ClassCounts counts{{3, 1}, {7, 98}, {9, 1}};
-  EXPECT_EQ(total(counts), 100U);
-  EXPECT_EQ(quantile(counts, 0), 3);
-  EXPECT_EQ(quantile(counts, 0.5), 7);
-  EXPECT_EQ(quantile(counts, 1), 9);
-  EXPECT_EQ(quantile({}, 0.5), 0);
 }
 
 }  // namespace
