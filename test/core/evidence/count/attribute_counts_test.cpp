@@ -9,8 +9,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-using Step = Attributes::Step;
-
 TEST(AgeLevel, WhatIsOlderThanOfLateIsARise) {
   AgeLevel level;
   EXPECT_EQ(level.add(0, 5), 0);  // clocks of two computers may differ
@@ -83,18 +81,6 @@ TEST(AttributeCounts, CountsWhatMessagesAre) {
   EXPECT_NEAR(static_cast<double>(faulty.losses()), 100, 40);
   EXPECT_EQ(faulty.repeats, 950U);
   EXPECT_NEAR(toSeconds(faulty.longest_repeat), 95, 0.2);
-}
-
-TEST(AttributeCounts, WhatATypeSaysFirstDoesNotCount) {
-  Events events = messages(kA, kStart, kStart + 100 * kSecond, {});
-  const Events usual = events;
-  for (std::size_t k = 0; k < 50; ++k) {
-    events[k].attributes = {Attributes::kZeroStamp, sizeClass(1), Step::kLostMany, true};
-  }
-  EXPECT_EQ(countsOf({events}, 1).type(kA).attributes, countsOf({usual}, 1).type(kA).attributes);
-  events[50].attributes.age = Attributes::kZeroStamp;
-  EXPECT_FALSE(countsOf({events}, 1).type(kA).attributes ==
-               countsOf({usual}, 1).type(kA).attributes);
 }
 
 TEST(AttributeCounts, AStartIsThatOfTheRecording) {

@@ -61,16 +61,6 @@ class NeverHeardTest : public testing::Test {
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
 };
 
-TEST_F(NeverHeardTest, WhatIsExcusedNeedNotCome) {
-  NeverHeard never_heard = neverHeardBut({kA, kB});
-  never_heard.excuse({false, false, true});
-  EXPECT_EQ(shareAt(never_heard, 117 * kSecond), 0);
-  EXPECT_TRUE(never_heard.suspects().empty());
-  EXPECT_TRUE(never_heard.shares().empty());
-  never_heard.excuse({false, false, false});
-  EXPECT_GT(shareAt(never_heard, 117 * kSecond), 1) << "once that is taken back";
-}
-
 TEST_F(NeverHeardTest, WhatComesLateAsAlwaysIsNormalAndWhatDoesNotComeIsNot) {
   train({start(14400 * kMillisecond, 1)}, {start(14600 * kMillisecond, 7)});
   NeverHeard never_heard = neverHeardBut({kA, kB});

@@ -231,20 +231,6 @@ TEST(Relations, AnIrregularTriggerIsAReason) {
   EXPECT_FALSE(delays(countsOf({unrelated}, 2)).irregular);
 }
 
-TEST(Relations, MissesByChanceAreTheGapsThatFitIntoThoseOfTheOther) {
-  // At random, a gap of A of 1 s lies in a gap of B of 2 s half of the time.
-  const Statistics counts = countsOf(
-      {together({timer(kA, 0, 100 * kSecond, kSecond), timer(kB, 0, 100 * kSecond, 2 * kSecond)})},
-      2);
-  const double a = log_bins::middle(log_bins::bin(kSecond));
-  const double b = log_bins::middle(log_bins::bin(2 * kSecond));
-  const Relations relations(counts, kNoGraph, kTuning);
-  EXPECT_NEAR(relations.missRateByChance(kA, kB), (b - a) / (2.0 * kSecond), 1e-12);
-  EXPECT_NEAR(relations.missRateByChance(kA, kB), 0.5, 0.02);
-  EXPECT_EQ(relations.missRateByChance(kB, kA), 0) << "an A comes in every gap of B";
-  EXPECT_EQ(relations.missRateByChance(kA, kA), 0);
-}
-
 // Requests at random, about every 4 s, each with its answer.
 Events requests(unsigned seed) {
   return irregular(kA, 0, 400 * kSecond, 4 * kSecond, seed);
