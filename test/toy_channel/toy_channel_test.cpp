@@ -3,27 +3,17 @@
 
 #include "toy_channel.h"
 
-#include <diagnostic_msgs/DiagnosticArray.h>
 #include <gtest/gtest.h>
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
 
-#include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
-#include "../core/evidence/recordings.h"
-#include "core/evidence/channel/scorer.h"
+#include "../core/evidence/judged.h"
 #include "core/evidence/lanes.h"
-#include "ros/verdict/result_bag.h"
-#include "ros/verdict/verdict_message.h"
 #include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/learn.h"
-#include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::core::evidence {
@@ -34,7 +24,6 @@ constexpr std::int64_t kLength = 100 * kSecond;
 constexpr std::int64_t kFault = 50 * kSecond;  // after the start of a recording
 constexpr int kAtOnce = 15;
 const std::vector<EventType> kRobot{{"/a", "/x", "T"}, {"/b", "/y", "T"}};
-constexpr int kRecordings = 4;
 
 // Two components that have nothing to do with each other; one of them may hold back what it has to
 // say for a moment, and then say it at once.
@@ -42,12 +31,9 @@ Events robot(unsigned seed, bool burst) {
   Events events = together({irregular(kA, 0, kLength, 200 * kMillisecond, seed),
                             irregular(kB, 0, kLength, 50 * kMillisecond, seed + 100)});
   if (burst) {
-    events.erase(std::remove_if(events.begin(), events.end(),
-                                [](const Event& event) {
-                                  return event.id == kA &&
-                                         std::abs(event.stamp - kFault) < 600 * kMillisecond;
-                                }),
-                 events.end());
+    events = without(events, [](const Event& event) {
+      return event.id == kA && std::abs(event.stamp - kFault) < 600 * kMillisecond;
+    });
     events = together({events, timer(kA, kFault, kFault + kAtOnce * kMillisecond, kMillisecond)});
   }
   return later(events, seed * kStart);
@@ -55,17 +41,11 @@ Events robot(unsigned seed, bool burst) {
 
 /// What is learned from recordings of normal operation.
 ros1::TrainedModel trained(const Tuning& tuning) {
-  Learner::Parameters parameters;
-  parameters.counting.window = kWindow;
-  parameters.tuning = tuning;
-  Learner learner(parameters, {});
-  for (const EventType& type : kRobot) {
-    learner.intern(type);
+  std::vector<Events> recordings;
+  for (unsigned number = 0; number < 4; ++number) {
+    recordings.push_back(robot(number, false));
   }
-  for (unsigned number = 0; number < kRecordings; ++number) {
-    learner.add({robot(number, false), ""});
-  }
-  ros1::TrainedModel model(learner.learn());
+  ros1::TrainedModel model(learnedFrom(kRobot, recordings, tuning));
   model.encoding = ros1::EncodingRules::defaults();
   model.stamp = 1700000000 * kSecond;
   return model;
@@ -86,37 +66,17 @@ class ToyChannelTest : public testing::Test {
   std::string file(const std::string& name) const { return (folder_ / name).string(); }
 
   /// Judges a recording; returns the verdicts with which an alarm began.
-  std::vector<Verdict> alarmsIn(const Events& events, const SharesHandler& shares = nullptr,
-                                ros1::ReplayedMonitor* monitor = nullptr) const {
+  std::vector<Verdict> alarmsIn(const Events& events,
+                                const SharesHandler& shares = nullptr) const {
     std::vector<Verdict> alarms;
-    Detector detector(makeJudge(std::make_shared<Model>(model_.watched), model_.limits(),
-                                model_.window, std::make_shared<SourceGraph>(), nullptr, shares),
-                      model_.window, {}, [&](const Verdict& verdict) {
-                        if (monitor != nullptr) {
-                          monitor->onVerdict(verdict);
-                        }
-                        if (verdict.changed && verdict.alarm) {
-                          alarms.push_back(verdict);
-                        }
-                      });
-    for (const Event& event : events) {
-      const bool same_clock = detector.add(event);
-      if (monitor != nullptr) {
-        monitor->onEvent(event, same_clock);
-      }
-    }
-    detector.finish();
+    judge(makeJudge(std::make_shared<Model>(model_.watched), model_.limits(), model_.window,
+                    std::make_shared<SourceGraph>(), nullptr, shares),
+          events, [&](const Verdict& verdict) {
+            if (verdict.changed && verdict.alarm) {
+              alarms.push_back(verdict);
+            }
+          });
     return alarms;
-  }
-  template <typename Message>
-  std::vector<Message> written(const std::string& topic) const {
-    const rosbag::Bag bag(file("results.bag"), rosbag::bagmode::Read);
-    rosbag::View view(bag, rosbag::TopicQuery(topic));
-    std::vector<Message> messages;
-    for (const rosbag::MessageInstance& instance : view) {
-      messages.push_back(*instance.instantiate<Message>());
-    }
-    return messages;
   }
 
   const boost::filesystem::path folder_ =
@@ -124,12 +84,11 @@ class ToyChannelTest : public testing::Test {
   const bool created_ = boost::filesystem::create_directory(folder_);
   ros1::TrainedModel model_;
   std::size_t bursts_ = 0;
-  const Events normal_ = robot(10, false);
   const Events faulty_ = robot(11, true);
   const std::string words_ = std::to_string(kAtOnce) + " at once, usually one every 0.2";
 };
 
-TEST_F(ToyChannelTest, IsWatchedAndHasALimit) {
+TEST_F(ToyChannelTest, IsWatchedAndHasALimitAlsoInTheModelFile) {
   ASSERT_LT(bursts_, model_.watched.tracks.size());
   EXPECT_EQ(channelLabel(model_.watched.tracks[bursts_]), kBursts);
   EXPECT_TRUE(isWatched(model_.watched.tracks, kBursts, kB, kB));
@@ -138,6 +97,12 @@ TEST_F(ToyChannelTest, IsWatchedAndHasALimit) {
   EXPECT_LT(limit, kAtOnce);
   EXPECT_TRUE(model_.calibration->relations.at(bursts_).watched);
   EXPECT_GT(model_.findings.at(0).parts.at(0).evidence.at(bursts_), 0);
+  for (const ros1::TrainedModel& again :
+       {ros1::loadModel(file("robot.model"), ros1::ModelCounts::kWatched),
+        ros1::fromBytes(ros1::toBytes(model_))}) {
+    EXPECT_EQ(indexOf(again.watched.tracks, kBursts, kA, kA), bursts_);
+    EXPECT_EQ(again.limits()->tracks.at(bursts_), limit);
+  }
 }
 
 TEST_F(ToyChannelTest, CanBeSwitchedOffByItsName) {
@@ -147,20 +112,8 @@ TEST_F(ToyChannelTest, CanBeSwitchedOffByItsName) {
   EXPECT_FALSE(isWatched(trained(tuning).watched.tracks, kBursts, kA, kA));
 }
 
-TEST_F(ToyChannelTest, ItsTracksAreInTheModelFile) {
-  const ros1::TrainedModel again = ros1::fromBytes(ros1::toBytes(model_));
-  for (const ros1::TrainedModel& model :
-       {ros1::loadModel(file("robot.model"), ros1::ModelCounts::kWatched), again}) {
-    EXPECT_EQ(indexOf(model.watched.tracks, kBursts, kA, kA), bursts_);
-    EXPECT_EQ(model.limits()->tracks.at(bursts_), model_.limits()->tracks[bursts_]);
-  }
-}
-
-TEST_F(ToyChannelTest, NormalOperationRaisesNoAlarm) {
-  EXPECT_TRUE(alarmsIn(normal_).empty());
-}
-
 TEST_F(ToyChannelTest, ABurstIsAnAlarmThatNamesItInItsOwnWords) {
+  EXPECT_TRUE(alarmsIn(robot(10, false)).empty());
   const std::vector<Verdict> alarms = alarmsIn(faulty_);
   ASSERT_EQ(alarms.size(), 1U);
   EXPECT_EQ(alarms[0].evidence, kBursts);
@@ -184,35 +137,6 @@ TEST_F(ToyChannelTest, TheReportDrawsItsShare) {
                   static_cast<float>(kAtOnce / model_.limits()->tracks[bursts_]));
   EXPECT_EQ(columns[1].shares[model->componentIndex(kA)], columns[1].strongest_share);
   EXPECT_LT(columns[2].strongest_share, 1);
-}
-
-TEST_F(ToyChannelTest, TheMonitorPublishesIt) {
-  {
-    ros1::ResultBag bag(file("results.bag"));
-    ros1::ReplayedMonitor monitor(bag, {"robot.model", true, model_.window, kRobot.size()}, kRobot,
-                                  faulty_.front().stamp);
-    alarmsIn(faulty_, nullptr, &monitor);
-    bag.close();
-  }
-  const auto alarms = written<self_awareness::SelfAwareness>("/self_awareness/alarm");
-  const auto alarm = std::find_if(alarms.begin(), alarms.end(), [](const auto& message) {
-    return message.level == self_awareness::SelfAwareness::ERROR;
-  });
-  ASSERT_NE(alarm, alarms.end());
-  EXPECT_EQ(alarm->evidence, kBursts);
-  ASSERT_EQ(alarm->suspects.size(), 1U);
-  EXPECT_EQ(alarm->suspects[0].source, "/a");
-  EXPECT_EQ(alarm->suspects[0].reason.rfind(words_, 0), 0U);
-  EXPECT_EQ(alarm->message.rfind("/a (/x) ", 0), 0U) << alarm->message;
-  EXPECT_NE(alarm->message.find(words_), std::string::npos) << alarm->message;
-  bool said = false;
-  for (const auto& array : written<diagnostic_msgs::DiagnosticArray>("/diagnostics")) {
-    for (const diagnostic_msgs::DiagnosticStatus& status : array.status) {
-      said = said || (status.name == "self_awareness: /a" &&
-                      status.message.find(words_) != std::string::npos);
-    }
-  }
-  EXPECT_TRUE(said);
 }
 
 }  // namespace

@@ -59,8 +59,10 @@ inline std::optional<Begun> alarmIn(std::unique_ptr<core::Judge> judging, const 
   return alarm;
 }
 
-inline std::vector<EventId> idsOf(const std::vector<Suspect>& suspects) {
-  std::vector<EventId> ids;
+using Ids = std::vector<EventId>;
+
+inline Ids idsOf(const std::vector<Suspect>& suspects) {
+  Ids ids;
   ids.reserve(suspects.size());
   for (const Suspect& suspect : suspects) {
     ids.push_back(suspect.id);

@@ -2,13 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <vector>
 
-#include "self_awareness/core/verdict/detector.h"
 #include "tracks.h"
 
 namespace self_awareness::core::evidence {
@@ -54,33 +51,6 @@ TEST_F(LanesTest, AColumnKeepsTheLargestOfItsWindows) {
   EXPECT_EQ(columns[1].shares[component(kA)], 0.25F);
   EXPECT_EQ(columns[1].shares[component(kB)], 0.125F);  // never heard
   EXPECT_THROW(Lanes(model_, {1, 0}), std::invalid_argument) << "stretches are in order";
-}
-
-TEST_F(LanesTest, TheyAgreeWithTheScore) {
-  Limits limits;
-  for (std::size_t each = 0; each < model_->tracks().size(); ++each) {
-    limits.tracks.push_back(model_->leastLimit(each));
-  }
-  Lanes lanes(model_, {0, 15 * kSecond, 20 * kSecond});
-  std::vector<double> lowest(3, 0);
-  Detector detector(
-      makeJudge(model_, limits, kWindow, std::make_shared<SourceGraph>(), nullptr,
-                [&](const Window& window, const Shares& shares) { lanes.add(window, shares); }),
-      kWindow, {}, [&](const Verdict& verdict) {
-        const std::int64_t start = verdict.window->start;
-        double& score = lowest[start < 15 * kSecond ? 0 : start < 20 * kSecond ? 1 : 2];
-        score = std::min(score, *verdict.score);
-      });
-  addAll(detector, followed(3, 20 * kSecond));
-  detector.advance(30 * kSecond);  // both are silent
-  detector.finish();
-  EXPECT_LT(lowest[2], -1);
-  for (std::size_t column = 0; column < lowest.size(); ++column) {
-    const Lanes::Column& lane = lanes.columns()[column];
-    const float largest = *std::max_element(lane.shares.begin(), lane.shares.end());
-    EXPECT_FLOAT_EQ(largest, static_cast<float>(-lowest[column]));
-    EXPECT_FLOAT_EQ(lane.strongest_share, largest);
-  }
 }
 
 }  // namespace

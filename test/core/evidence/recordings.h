@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -76,6 +77,35 @@ inline Events followed(unsigned seed, std::int64_t length = 100 * kSecond,
                        std::int64_t delay = 20 * kMillisecond) {
   const Events asked = irregular(kA, 0, length, 200 * kMillisecond, seed);
   return together({asked, answers(kB, asked, delay)});
+}
+
+/// A source of messages with stamps, numbers, a size and content of their own.
+struct Source {
+  std::int64_t period = 100 * kMillisecond;
+  double age = 0.02;         ///< of the stamps [s]
+  std::uint64_t size = 800;  ///< [bytes]
+  double spread = 0;         ///< by so many octaves sizes vary, up and down
+  bool repeats = false;      ///< every message has the content of the one before
+  double lost = 0;           ///< share of the messages
+};
+
+/// Its messages from `start` to `end` [ns].
+inline Events messages(EventId id, std::int64_t start, std::int64_t end, const Source& source,
+                       unsigned seed = 0) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  std::bernoulli_distribution lost(source.lost);
+  Events events;
+  for (std::int64_t stamp = start; stamp < end; stamp += source.period) {
+    Attributes attributes;
+    attributes.age = ageClass(toNanoseconds(source.age * (1 + 0.2 * uniform(random))));
+    attributes.size = sizeClass(static_cast<std::uint64_t>(
+        static_cast<double>(source.size) * std::exp2(source.spread * uniform(random))));
+    attributes.step = lost(random) ? Attributes::Step::kLostOne : Attributes::Step::kNext;
+    attributes.same = source.repeats;
+    events.push_back({stamp, id, attributes});
+  }
+  return events;
 }
 
 /// So many event types that have nothing to do with each other, all at random.

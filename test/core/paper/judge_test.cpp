@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 
 #include "core/paper/delay_trainer.h"
 #include "core/paper/scorer.h"
@@ -36,11 +39,77 @@ class PaperJudgeTest : public testing::Test {
     window_.events.clear();
     return judgement;
   }
+  // What the model was trained on goes on, and is judged once a period; at last A alone.
+  Judgement run(int periods, bool alone = false) {
+    Judgement judgement;
+    for (const int end = number_ + periods; number_ < end; ++number_) {
+      add({number_ * kPeriod, 0});
+      if (!alone) {
+        add({number_ * kPeriod + 20000000, 1});
+      }
+      judgement = judge((number_ + 1) * kPeriod);
+      EXPECT_TRUE(alone || !judgement.abnormal) << number_;
+    }
+    return judgement;
+  }
 
   std::shared_ptr<const Model> model_ = trained();
   std::unique_ptr<core::Judge> judge_ = makeJudge(model_, 0.1, true);
   Window window_;
+  std::int64_t number_ = 0;  // of the period
 };
+
+TEST_F(PaperJudgeTest, NamesTheComponentThatFellSilent) {
+  judge_ = makeJudge(model_, 1.2, true);
+  add({-kPeriod, 0});
+  add({20000000 - kPeriod, 1});
+  judge(0);
+  run(20);
+  const Judgement judgement = run(60, true);
+  EXPECT_TRUE(judgement.abnormal);
+  ASSERT_FALSE(judgement.suspects.empty());
+  const Suspect& silent = judgement.suspects[0];
+  EXPECT_EQ(silent.component, "/b");
+  EXPECT_EQ(silent.reason.kind, Kind::kSilent);
+  EXPECT_EQ(silent.reason.words, "silent for 3.03 s, usually every 0.050 to 0.060 s");
+  const Judgement both = judge((number_ + 200) * kPeriod);
+  ASSERT_EQ(both.suspects.size(), 2U);
+  EXPECT_EQ(both.suspects[0].component, "/b") << "who has been silent for longer comes first";
+}
+
+TEST_F(PaperJudgeTest, SilenceOfAllIsAbnormalUnlessItIsIgnored) {
+  for (const bool silence_is_abnormal : {true, false}) {
+    judge_ = makeJudge(model_, 0.1, silence_is_abnormal);
+    add({0, 0});
+    judge(kPeriod);
+    const Judgement silent = judge(2 * kPeriod);
+    EXPECT_EQ(silent.abnormal, silence_is_abnormal);
+    EXPECT_EQ(silent.evidence, silence_is_abnormal ? "silence" : "");
+  }
+}
+
+TEST_F(PaperJudgeTest, SettlesWithANewComponentAndNotWithANewTopic) {
+  DelayStatistics statistics{Binning{}};
+  for (const EventType& type :
+       {EventType{"/a", "/often", "T"}, {"/a", "/rarely", "T"}, {"/b", "/y", "T"}}) {
+    statistics.countEvent(statistics.intern(type));
+  }
+  judge_ = makeJudge(std::make_shared<const Model>(statistics), 0.1, true);
+  const auto settlesWith = [&](std::int64_t stamp, EventId id) {
+    judge_->settle({stamp, id}, kPeriod);
+    window_.start = stamp;
+    return judge(stamp + 1).settling;
+  };
+  EXPECT_FALSE(settlesWith(0, 0)) << "the detector settles then";
+  EXPECT_FALSE(settlesWith(2 * kPeriod, 1));
+  EXPECT_TRUE(settlesWith(2 * kPeriod, 2));
+}
+
+TEST_F(PaperJudgeTest, RefusesAThresholdThatIsNoNumber) {
+  for (const double none : {std::nan(""), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(makeJudge(model_, none, true), std::invalid_argument);
+  }
+}
 
 TEST_F(PaperJudgeTest, ARestartForgetsTheScoresOfTheOpenWindow) {
   add({0, 0});

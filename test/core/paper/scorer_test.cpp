@@ -104,18 +104,15 @@ TEST(PaperScorer, ScoresLiterallyForAnyNumberOfTypes) {
   }
 }
 
-TEST(PaperScorer, ScoresLiterallyWhereBinsNeed33Bits) {
+TEST(PaperScorer, ScoresLiterallyWhereBinsOrCountsNeed33Bits) {
   const std::vector<Event> training = randomEvents(1, 3, 2, 500, 2000000000);
-  const DelayStatistics statistics = train(Binning{1, 0}, 3, training);
-  EXPECT_GT(statistics.pair(2, 0).quantile(1), std::int64_t{1} << 32);
-  expectLiteralScores(statistics, training);
-}
-
-TEST(PaperScorer, ScoresLiterallyWhereCountsNeed33Bits) {
-  DelayStatistics statistics = train(Binning{10000000, 0}, 3, randomEvents(1, 3, 3, 500, 5000000));
-  statistics.pair(0, 1).add(2, std::uint64_t{1} << 33);
-  statistics.pair(1, 1).add(1, (std::uint64_t{1} << 31) + 1);
-  expectLiteralScores(statistics, randomEvents(2, 3, 3, 500, 5000000));
+  const DelayStatistics bins = train(Binning{1, 0}, 3, training);
+  EXPECT_GT(bins.pair(2, 0).quantile(1), std::int64_t{1} << 32);
+  expectLiteralScores(bins, training);
+  DelayStatistics counts = train(Binning{10000000, 0}, 3, randomEvents(1, 3, 3, 500, 5000000));
+  counts.pair(0, 1).add(2, std::uint64_t{1} << 33);
+  counts.pair(1, 1).add(1, (std::uint64_t{1} << 31) + 1);
+  expectLiteralScores(counts, randomEvents(2, 3, 3, 500, 5000000));
 }
 
 TEST(PaperModel, KnowsWhatAnEventScoresOnTheAverage) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -18,13 +17,19 @@ TEST(Attributes, TakeNoRoomInAnEvent) {
   EXPECT_FALSE(Event{}.attributes.isKnown());
 }
 
-TEST(Attributes, AnAgeIsKnownToNinePercent) {
+TEST(Attributes, AgesAndSizesAreKnownToNinePercent) {
   for (double age = 1.1e-3; age < 1900; age *= 1.07) {
     const std::uint8_t number = ageClass(toNanoseconds(age));
     EXPECT_NEAR(ageOf(number), age, 0.05 * age);
     EXPECT_GE(ageClass(toNanoseconds(1.1 * age)), number + 1);
     EXPECT_NEAR(ageOf(ageClass(-toNanoseconds(age))), -age, 0.1 * age);
   }
+  for (double size = 20; size < 1e9; size *= 1.1) {
+    EXPECT_NEAR(sizeOf(sizeClass(static_cast<std::uint64_t>(size))), size, 0.05 * size + 1);
+  }
+  EXPECT_EQ(sizeOf(sizeClass(0)), 0);
+  EXPECT_NE(sizeClass(0), Attributes::kNoSize);
+  EXPECT_EQ(sizeClass(std::numeric_limits<std::uint64_t>::max()), Attributes::kLargestSize);
 }
 
 TEST(Attributes, OlderAgesHaveLargerClasses) {
@@ -39,16 +44,6 @@ TEST(Attributes, OlderAgesHaveLargerClasses) {
   EXPECT_EQ(ageOf(ageClass(-999999)), 0);
   EXPECT_EQ(ageClass(std::numeric_limits<std::int64_t>::max()), 254);
   EXPECT_EQ(ageClass(std::numeric_limits<std::int64_t>::min()), Attributes::kYoungest);
-}
-
-TEST(Attributes, ASizeIsKnownToNinePercent) {
-  EXPECT_EQ(sizeOf(sizeClass(0)), 0);
-  EXPECT_NE(sizeClass(0), Attributes::kNoSize);
-  for (double size = 20; size < 1e9; size *= 1.1) {
-    const auto bytes = static_cast<std::uint64_t>(size);
-    EXPECT_NEAR(sizeOf(sizeClass(bytes)), size, 0.05 * size + 1);
-  }
-  EXPECT_EQ(sizeClass(std::numeric_limits<std::uint64_t>::max()), Attributes::kLargestSize);
 }
 
 TEST(Attributes, NumbersSayWhatIsMissing) {

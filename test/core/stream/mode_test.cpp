@@ -10,25 +10,17 @@ namespace {
 constexpr EventId kDriving = 3;
 constexpr EventId kDocked = 5;
 
-TEST(ModeType, SaysItsMode) {
+TEST(ModeType, SaysItsModeAndNoFieldOfATypeIsOne) {
   const EventType type{"/logic", "/state", typeOfMode("std_msgs/String", "DRIVING [x]")};
   EXPECT_TRUE(tellsMode(type));
   EXPECT_EQ(modeOf(type), "DRIVING [x]");
   EXPECT_EQ(toString(type), "/logic /state std_msgs/String[mode: DRIVING [x]]");
-}
-
-TEST(ModeType, NoFieldOfATypeIsAMode) {
-  for (const char* type : {"std_msgs/String", "a/B[mode=DRIVING]", "a/B[x=[mode: DRIVING]]",
-                           "a/B[mode: DRIVING", ""}) {
-    EXPECT_FALSE(tellsMode({"/logic", "/state", type})) << type;
-    EXPECT_EQ(modeOf({"/logic", "/state", type}), "") << type;
+  for (const char* other : {"std_msgs/String", "a/B[mode=DRIVING]", "a/B[x=[mode: DRIVING]]",
+                            "a/B[mode: DRIVING", ""}) {
+    EXPECT_FALSE(tellsMode({"/logic", "/state", other})) << other;
+    EXPECT_EQ(modeOf({"/logic", "/state", other}), "") << other;
   }
-}
-
-TEST(ModeType, TheVocabularyKnowsItById) {
-  Vocabulary vocabulary;
-  vocabulary.intern({"/logic", "/state", "std_msgs/String"});
-  vocabulary.intern({"/logic", "/state", typeOfMode("std_msgs/String", "DRIVING")});
+  const Vocabulary vocabulary({{"/logic", "/state", "std_msgs/String"}, type});
   EXPECT_FALSE(vocabulary.tellsMode(0));
   EXPECT_TRUE(vocabulary.tellsMode(1));
   EXPECT_FALSE(vocabulary.tellsMode(2));
@@ -67,23 +59,18 @@ TEST(ModeTime, LastsSinceItWasToldWithoutABreak) {
   EXPECT_FALSE(mode.lasting(600));
 }
 
-TEST(ModeTime, ALateEventTurnsNothingBack) {
+TEST(ModeTime, ARestartForgetsTimeAndNotTheModeAndALateEventTurnsNothingBack) {
   ModeTime mode;
   mode.enter(kDriving, 100);
-  EXPECT_EQ(mode.lasted(kDriving, 90), 0);
-  mode.enter(kDocked, 95);
-  EXPECT_EQ(mode.lasted(kDriving, 1000), 0);
-}
-
-TEST(ModeTime, ARestartForgetsTimeAndNotTheMode) {
-  ModeTime mode;
-  mode.enter(kDriving, 100);
+  EXPECT_EQ(mode.lasted(kDriving, 90), 0) << "late";
   mode.restart();
   EXPECT_EQ(mode.mode(), kDriving);
   EXPECT_EQ(mode.lasted(kDriving, 1000), 0);
   mode.begin(1000);
   mode.begin(2000);
   EXPECT_EQ(mode.lasted(kDriving, 2500), 1500) << "from the first event on";
+  mode.enter(kDocked, 995);
+  EXPECT_EQ(mode.lasted(kDriving, 3000), 0) << "late";
 }
 
 }  // namespace

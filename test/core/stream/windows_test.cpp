@@ -46,7 +46,7 @@ TEST(Windows, LieOnTheAbsoluteGridAlsoBeforeTheEpoch) {
   EXPECT_THROW(Windows(0, told), std::invalid_argument);
 }
 
-TEST(Windows, AreClosedBeforeTheEventThatEndsThem) {
+TEST(Windows, AreClosedBeforeTheEventThatEndsThemWhichIsInNoneIfItTellsAMode) {
   Told told;
   Windows windows(100, told);
   windows.add({10, 1});
@@ -56,17 +56,31 @@ TEST(Windows, AreClosedBeforeTheEventThatEndsThem) {
   windows.advance(400);
   EXPECT_EQ(told.told, "17[0 100 2][100 200 0][200 300 0]23[300 400 2]");
   EXPECT_EQ(told.unknown, (std::vector<std::size_t>{1, 0, 0, 0}));
+  told.told.clear();
+  windows.add({410, kModeId});
+  windows.add({420, 1});
+  windows.add({510, kModeId});
+  EXPECT_EQ(told.told, "81[400 500 1]8");
+  windows.finish();
+  EXPECT_EQ(told.told, "81[400 500 1]8[500 510 0]");
 }
 
-TEST(Windows, TheLastOneEndsWithWhatIsKnown) {
-  Told told;
-  Windows windows(100, told);
-  windows.add({10, 1});
-  windows.advance(70);
-  windows.finish();
-  windows.finish();
-  EXPECT_EQ(told.told, "1[0 70 1]");
-  EXPECT_FALSE(windows.lastStamp());
+TEST(Windows, TheLastOneEndsWithWhatIsKnownUnlessARestartForgetsIt) {
+  for (const bool restarts : {false, true}) {
+    Told told;
+    Windows windows(100, told);
+    windows.add({10, 1});
+    windows.advance(70);
+    if (restarts) {
+      windows.restart();
+      windows.advance(1000);
+    }
+    windows.finish();
+    windows.finish();
+    EXPECT_EQ(told.told, restarts ? "1" : "1[0 70 1]");
+    EXPECT_FALSE(windows.lastStamp());
+    EXPECT_TRUE(windows.add({-1000 * kWindow, 2})) << "no step: it is the first event";
+  }
 }
 
 TEST(Windows, AStepOfTheClockStartsANewRecording) {
@@ -79,28 +93,6 @@ TEST(Windows, AStepOfTheClockStartsANewRecording) {
     EXPECT_EQ(told.told, "1!2") << step;  // the open window is lost
     EXPECT_EQ(windows.lastStamp(), start + step);
   }
-}
-
-TEST(Windows, WhatTellsAModeIsInNone) {
-  Told told;
-  Windows windows(100, told);
-  windows.add({10, kModeId});
-  windows.add({20, 1});
-  windows.add({110, kModeId});
-  EXPECT_EQ(told.told, "81[0 100 1]8");
-  windows.finish();
-  EXPECT_EQ(told.told, "81[0 100 1]8[100 110 0]");
-}
-
-TEST(Windows, ARestartForgetsTheOpenWindow) {
-  Told told;
-  Windows windows(100, told);
-  windows.add({10, 1});
-  windows.restart();
-  windows.advance(1000);
-  windows.finish();
-  EXPECT_EQ(told.told, "1");
-  EXPECT_TRUE(windows.add({-1000 * kWindow, 2}));  // no step: it is the first event
 }
 
 }  // namespace

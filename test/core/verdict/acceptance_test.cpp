@@ -6,21 +6,27 @@
 #include <string>
 
 #include "accepted.h"
+#include "told_judge.h"
 
 namespace self_awareness::core {
 namespace {
 
-TEST(Acceptances, WhatIsNamedMustAllFit) {
+TEST(Acceptances, WhatIsNamedMustAllFitAndWhoMayBeSilentMayDoAnything) {
   const Acceptances accepted_now = allOf({accepted("/rostopic*", "/cmd_vel", Kind::kStranger)});
   EXPECT_TRUE(accepted_now.covers("/rostopic_12", "/cmd_vel", Kind::kStranger));
   EXPECT_FALSE(accepted_now.covers("/rostopic_12", "/scan", Kind::kStranger));
   EXPECT_FALSE(accepted_now.covers("/joystick", "/cmd_vel", Kind::kStranger));
   EXPECT_FALSE(accepted_now.covers("/rostopic_12", "/cmd_vel", Kind::kSlow)) << "once known";
+  for (const std::optional<Kind>& kind : {std::optional<Kind>(), {Kind::kSilent}}) {
+    const Acceptances silent = allOf({accepted("", "/image", kind)});
+    EXPECT_TRUE(silent.covers("/camera", "/image", Kind::kSilent));
+    EXPECT_TRUE(silent.covers("/camera", "/image", Kind::kSlow));
+    EXPECT_FALSE(silent.covers("/camera", "/info", Kind::kSlow));
+  }
 }
 
 TEST(Acceptances, AModeCoversThatThoseOfItAreOffTogetherAndNoDeath) {
-  Acceptances accepted_now;
-  accepted_now.add(acceptedMode({"/arm", "/laser", "/lidar", "/wheels"}));
+  Acceptances accepted_now = allOf({acceptedMode({"/arm", "/laser", "/lidar", "/wheels"})});
   EXPECT_TRUE(accepted_now.coversMode({"/arm", "/laser", "/lidar", "/wheels"}));
   EXPECT_TRUE(accepted_now.coversMode({"/arm", "/lidar"}));
   EXPECT_FALSE(accepted_now.coversMode({"/arm", "/imu"}));
@@ -49,31 +55,20 @@ TEST(Acceptances, AModeIsTakenBackByItselfItsKindOrOneOfIt) {
   EXPECT_EQ(left(accepted("/arm", "/joints")), 3U) << "a mode has no topic";
 }
 
-TEST(Acceptances, WhoMayBeSilentMayDoAnything) {
-  for (const std::optional<Kind>& kind : {std::optional<Kind>(), {Kind::kSilent}}) {
-    const Acceptances accepted_now = allOf({accepted("", "/image", kind)});
-    EXPECT_TRUE(accepted_now.covers("/camera", "/image", Kind::kSilent));
-    EXPECT_TRUE(accepted_now.covers("/camera", "/image", Kind::kSlow));
-    EXPECT_FALSE(accepted_now.covers("/camera", "/info", Kind::kSlow));
-  }
-}
-
 TEST(Acceptances, WhoMayBeAbsentIsJudgedWhileThere) {
-  Acceptances accepted_now;
-  accepted_now.add(accepted("/joy*", "", Kind::kNeverCame));
+  const Acceptances accepted_now = allOf({accepted("/joy*", "", Kind::kNeverCame)});
   EXPECT_TRUE(accepted_now.mayBeAbsent("/joystick", "/joy"));
   EXPECT_FALSE(accepted_now.mayBeAbsent("/camera", "/image"));
   for (const Kind kind : {Kind::kSilent, Kind::kSlow, Kind::kStranger}) {
     EXPECT_FALSE(accepted_now.covers("/joystick", "/joy", kind)) << toString(kind);
   }
-  Acceptances all;
-  all.add(accepted("/joystick", ""));
+  Acceptances all = allOf({accepted("/joystick")});
   EXPECT_FALSE(all.mayBeAbsent("/joystick", "/joy")) << "it is not judged at all";
   all.add(accepted_now);
   EXPECT_TRUE(all.mayBeAbsent("/joystick", "/joy"));
 }
 
-TEST(Acceptances, AllThatFitsIsTakenBack) {
+TEST(Acceptances, AllThatFitsIsTakenBackAndThereIsAMost) {
   const Acceptances all =
       allOf({accepted("/camera", "/image", Kind::kSlow), accepted("/camera", "", Kind::kStale),
              accepted("/cam*", "/image"), accepted("", "/image", Kind::kSlow)});
@@ -93,15 +88,64 @@ TEST(Acceptances, AllThatFitsIsTakenBack) {
   EXPECT_TRUE(once.remove(accepted("/camera", "/image")).empty());
   EXPECT_EQ(once.remove(accepted("/camera", "")).size(), 1U);
   EXPECT_FALSE(once.covers("/camera", "/image", Kind::kSilent));
+  for (std::size_t i = 0; i < Acceptances::kMost; ++i) {
+    EXPECT_TRUE(once.add(accepted("/node" + std::to_string(i))));
+  }
+  EXPECT_FALSE(once.add(accepted("/one_more")));
+  EXPECT_EQ(once.list().size(), Acceptances::kMost);
 }
 
-TEST(Acceptances, ThereIsAMost) {
-  Acceptances accepted_now;
-  for (std::size_t i = 0; i < Acceptances::kMost; ++i) {
-    EXPECT_TRUE(accepted_now.add(accepted("/node" + std::to_string(i), "")));
+class DetectorAcceptTest : public ToldTest {
+ protected:
+  static Acceptances ofUnknown(Kind kind) { return allOf({accepted("/7", "", kind)}); }
+};
+
+TEST_F(DetectorAcceptTest, WhoIsAcceptedIsNotNewAndToldOnceMoreAfterThatIsTakenBack) {
+  start();
+  EXPECT_TRUE(window(kUnknownId).suspicion);
+  windows(30);
+  EXPECT_FALSE(verdict_.suspicion) << "it was told once";
+  EXPECT_EQ(detector_->unknown().size(), 1U);
+  detector_->accept(ofUnknown(Kind::kStranger));
+  EXPECT_TRUE(detector_->unknown().empty());
+  EXPECT_FALSE(window(kUnknownId).suspicion);
+  EXPECT_TRUE(detector_->unknown().empty());
+  detector_->accept({});
+  EXPECT_TRUE(window(kUnknownId).suspicion) << "told again";
+  windows(30);
+  EXPECT_FALSE(window(kUnknownId).suspicion) << "once";
+}
+
+TEST_F(DetectorAcceptTest, WhatIsAcceptedWhileItsWindowIsOpenIsNoNews) {
+  for (const UnknownEvents unknown : {UnknownEvents::kWarn, UnknownEvents::kError}) {
+    start(unknown);
+    detector_->add({now_, kUnknownId});
+    detector_->accept(ofUnknown(Kind::kStranger));
+    EXPECT_FALSE(window().suspicion);
+    EXPECT_FALSE(verdict_.alarm);
   }
-  EXPECT_FALSE(accepted_now.add(accepted("/one_more", "")));
-  EXPECT_EQ(accepted_now.list().size(), Acceptances::kMost);
+}
+
+TEST_F(DetectorAcceptTest, AResumedAlarmDoesNotWaitForWhoMayBeSilent) {
+  Suspect dead = suspect("/7", kUnknownId);
+  dead.reason.kind = Kind::kSilent;
+  for (const bool before : {false, true}) {
+    start();
+    if (before) {
+      detector_->accept(ofUnknown(Kind::kSilent));
+    }
+    detector_->resume({dead});
+    if (!before) {
+      windows(100);
+      EXPECT_TRUE(verdict_.alarm) << "it is not heard";
+      detector_->accept(allOf({accepted("/0", "", Kind::kSilent)}));
+      windows(100);
+      EXPECT_TRUE(verdict_.alarm) << "another one is accepted";
+      detector_->accept(ofUnknown(Kind::kSilent));
+    }
+    windows(40);
+    EXPECT_FALSE(verdict_.alarm) << before;
+  }
 }
 
 }  // namespace

@@ -269,10 +269,14 @@ TEST_F(AlarmsTest, WhoDiedOnAnotherComputerBeforeIsStillToBlame) {
 }
 
 TEST_F(AlarmsTest, NamesStrangersAndTopicsWhereSourcesAreNotKnown) {
+  EXPECT_FALSE(alarms_.end(kStart)) << "none stands";
   add(verdict(kSuspicion, {suspect(2, Kind::kStranger)}));
   EXPECT_EQ(alarms_.standing()->culprit, "/z");
   EXPECT_EQ(alarms_.standing()->suspects[0].component, "/z");
-  alarms_.end(kStart);
+  const std::optional<Alarm> ended = alarms_.end(kStart + 7);
+  ASSERT_TRUE(ended && ended->over);
+  EXPECT_EQ(ended->end, kStart + 7);
+  EXPECT_FALSE(alarms_.standing());
   add(verdict(kSuspicion, {suspect(7, Kind::kStranger)}));
   EXPECT_EQ(alarms_.standing()->culprit, "") << "of that id nothing is known";
 }
@@ -317,16 +321,6 @@ TEST_F(AlarmsTest, ANewModeThatIsOverDoesNotHideWhoIsStillSilent) {
   expectBlamed("", Kind::kNewMode);  // who is back is unusual for a while
   add(verdict(kAlarm, {missing(1)}));
   expectBlamed("/b", Kind::kSilent);
-}
-
-TEST_F(AlarmsTest, MayBeEndedByHand) {
-  EXPECT_FALSE(alarms_.end(kStart));
-  add(verdict(kAlarm, {suspect(0, Kind::kSilent)}));
-  const std::optional<Alarm> ended = alarms_.end(kStart + 7);
-  ASSERT_TRUE(ended);
-  EXPECT_TRUE(ended->over);
-  EXPECT_EQ(ended->end, kStart + 7);
-  EXPECT_FALSE(alarms_.standing());
 }
 
 TEST_F(AlarmsTest, AnAlarmOfBeforeTheStartKeepsItsIdAndItsCulprit) {

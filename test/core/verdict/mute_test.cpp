@@ -65,24 +65,18 @@ TEST_F(MutesTest, AComponentIsMutedWithItsVictims) {
   EXPECT_FALSE(stands(std::nullopt));
 }
 
-TEST_F(MutesTest, WhoIsNamedLaterIsToldAgain) {
+TEST_F(MutesTest, WhoFailsLaterThanWhatIsMutedIsTold) {
   mutes_.add(mute("/player"));
-  std::optional<Alarm> grows = alarm({0});
-  EXPECT_TRUE(stands(grows));
-  grows->later = alarm({2})->suspects;
-  EXPECT_FALSE(stands(grows));
-}
-
-TEST_F(MutesTest, WhoFailsBesideAnAlarmOfBeforeTheStartIsTold) {
-  mutes_.add(mute("/player"));
-  std::optional<Alarm> resumed = alarm({});
-  resumed->culprit = "/player";
-  EXPECT_TRUE(stands(resumed));
-  resumed->later = alarm({1})->suspects;
-  EXPECT_TRUE(stands(resumed)) << "a victim";
-  resumed->later = alarm({2})->suspects;
-  EXPECT_FALSE(stands(resumed));
-  EXPECT_FALSE(stands(resumed)) << "the same again";
+  for (const bool resumed : {false, true}) {  // of the one of before the start no suspect is known
+    std::optional<Alarm> grows = resumed ? alarm({}) : alarm({0});
+    grows->culprit = "/player";
+    EXPECT_TRUE(stands(grows));
+    grows->later = alarm({1})->suspects;
+    EXPECT_TRUE(stands(grows)) << "a victim";
+    grows->later = alarm({2})->suspects;
+    EXPECT_FALSE(stands(grows));
+    EXPECT_FALSE(stands(grows)) << "the same again";
+  }
 }
 
 TEST_F(MutesTest, ATopicOrAKindOrAllIsMuted) {
@@ -148,30 +142,20 @@ TEST_F(MutesTest, EveryMuteEnds) {
   EXPECT_TRUE(mutes_.list().empty());
 }
 
-TEST_F(MutesTest, AMuteIsReplacedOrTakenBack) {
-  mutes_.add(mute("/player"));
+TEST_F(MutesTest, AMuteIsReplacedOrTakenBackAndTheirNumberIsBounded) {
   Mute longer = mute("/player");
   longer.until = 200;
+  mutes_.add(mute("/player"));
   EXPECT_TRUE(mutes_.add(longer));
-  EXPECT_EQ(mutes_.list().size(), 1U);
   EXPECT_TRUE(mutes_.advance(100).empty());
+  for (std::size_t i = 1; i < Mutes::kMost; ++i) {
+    EXPECT_TRUE(mutes_.add(mute("/n" + std::to_string(i))));
+  }
+  EXPECT_FALSE(mutes_.add(mute("/one_more")));
+  EXPECT_TRUE(mutes_.add(mute("/n7"))) << "it replaces another one";
   EXPECT_FALSE(mutes_.end(mute("/player", "/scan"))) << "there is none like it";
-  ASSERT_TRUE(mutes_.end(mute("/player")));
-  EXPECT_TRUE(mutes_.list().empty());
-}
-
-TEST_F(MutesTest, RenewedItCountsOnAndEndsWhenAllIsOver) {
-  Mute until_over = mute("/player");
-  until_over.until_over = true;
-  mutes_.add(until_over);
-  EXPECT_TRUE(stands(alarm({0})));
-  until_over.until = 200;
-  mutes_.add(until_over);
-  EXPECT_TRUE(stands(alarm({0})));
-  EXPECT_EQ(mutes_.active()->alarms, 1U);
-  stands(std::nullopt);
-  ASSERT_EQ(ended_.size(), 1U);
-  EXPECT_EQ(ended_[0].alarms, 1U);
+  EXPECT_TRUE(mutes_.end(mute("/player")));
+  EXPECT_EQ(mutes_.list().size(), Mutes::kMost - 1);
 }
 
 TEST_F(MutesTest, WhatIsOverDoesNotEndWhatIsRenewedLater) {
@@ -216,14 +200,6 @@ TEST_F(MutesTest, AllOfAComponentIsMutedByItsNameOrByMaintenance) {
   EXPECT_EQ(mutes_.ofComponent("/camera"), nullptr);
   mutes_.add(mute(""));
   EXPECT_NE(mutes_.ofComponent("/camera"), nullptr);
-}
-
-TEST_F(MutesTest, TheirNumberIsBounded) {
-  for (std::size_t i = 0; i < Mutes::kMost; ++i) {
-    EXPECT_TRUE(mutes_.add(mute("/n" + std::to_string(i))));
-  }
-  EXPECT_FALSE(mutes_.add(mute("/one_more")));
-  EXPECT_TRUE(mutes_.add(mute("/n7"))) << "it replaces another one";
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "../tracks.h"
 #include "core/evidence/channel/scorer.h"

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "../tracks.h"
+#include "self_awareness/core/evidence/limits/cross_fit.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -23,12 +25,15 @@ TEST(EvidenceModel, RefusesWhatItCannotJudgeBy) {
   EXPECT_THROW(Model{watched}, std::invalid_argument) << "a track of no channel";
 }
 
-TEST(EvidenceModel, ATypeThatNeverRepeatedIsNeverRare) {
-  const Model model(watch(countsOf({{{0, kA}, {kSecond, kB}, {2 * kSecond, kB}}}), kNothing));
-  EXPECT_EQ(model.logSurvival(kA, 3600 * kSecond), 0);
+TEST(EvidenceModel, KnowsTheLongestGapsAndTheLongestTimeWithoutAnyEvent) {
+  const Model model(watch(countsOf({{{0, kA}, {kSecond, kB}, {2 * kSecond, kB}}}),
+                          countsOf({later({{0, kB}, {250, kB}, {2 * kSecond, kC}})})));
+  EXPECT_EQ(model.logSurvival(kA, 3600 * kSecond), 0) << "it never repeated";
   EXPECT_EQ(model.longestGap(kA), 0);
   EXPECT_EQ(model.longestGap(kB), kSecond);
+  EXPECT_EQ(model.longestSilence(), 2 * kSecond - 250);
   EXPECT_TRUE(model.tracks().empty());
+  EXPECT_EQ(Model(watch(countsOf({}), kNothing)).longestSilence(), 0);
 }
 
 TEST(EvidenceModel, SurvivalIsTheShareOfGapsAndATailBeyondThem) {
@@ -39,13 +44,6 @@ TEST(EvidenceModel, SurvivalIsTheShareOfGapsAndATailBeyondThem) {
               std::log(100 + std::exp(-0.5)) - std::log(101), 1e-12);
 }
 
-TEST(EvidenceModel, KnowsTheLongestTimeWithoutAnyEvent) {
-  const Model model(watch(countsOf({{{0, kA}, {300, kB}, {400, kA}}}),
-                          countsOf({later({{0, kB}, {250, kB}, {600, kA}})})));
-  EXPECT_EQ(model.longestSilence(), 350);
-  EXPECT_EQ(Model(watch(countsOf({}), kNothing)).longestSilence(), 0);
-}
-
 TEST(EvidenceModel, TheTracksStayWhateverProbabilitiesWereLearnedFrom) {
   const Statistics first = startOf(followed(1), 1);
   const Watched watched = watch(first, startOf(followed(2), 2));
@@ -53,9 +51,14 @@ TEST(EvidenceModel, TheTracksStayWhateverProbabilitiesWereLearnedFrom) {
   const Model half(watched, Model::Learned::kFirst);
   const Model other(watched, Model::Learned::kSecond);
   expectSameTracks(both.tracks(), half.tracks());
-  EXPECT_NE(half.logSurvival(kA, kSecond), other.logSurvival(kA, kSecond));
-  EXPECT_DOUBLE_EQ(half.logSurvival(kA, kSecond),
-                   Model(watch(first, {})).logSurvival(kA, kSecond));
+  const auto survival = [](const Model& model) { return model.logSurvival(kA, kSecond); };
+  EXPECT_NE(survival(half), survival(other));
+  EXPECT_DOUBLE_EQ(survival(half), survival(Model(watch(first, {}))));
+  const CrossFit cross_fit(watched);
+  EXPECT_EQ(survival(*cross_fit.judging(0)), survival(other)) << "by what the other half says";
+  EXPECT_EQ(survival(*cross_fit.judging(1)), survival(half));
+  EXPECT_EQ(cross_fit.judging(std::nullopt), cross_fit.model());
+  EXPECT_THROW(cross_fit.judging(2), std::out_of_range);
 }
 
 TEST(EvidenceModel, AHalfMayLackAnEventType) {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -31,18 +30,14 @@ class PaceTest : public ChannelTest {
                              irregular(kC, 0, 100 * kSecond, 50 * kMillisecond, seed)}),
                    seed);
   }
-  // Adds an A so long after the last one; until then, the robot is not silent.
-  void wait(std::int64_t gap) {
-    for (std::int64_t at = 10 * kMillisecond; at < gap; at += 10 * kMillisecond) {
-      add({now_ + at, kC});
-    }
-    now_ += gap;
-    add({now_, kA});
-    scorer_.closeWindow(now_);
-  }
-  void wait(std::int64_t gap, int times) {
+  // Adds As, each so long after the last one; until then, the robot is not silent.
+  void wait(std::int64_t gap, int times = 1, const Attributes& attributes = {}) {
     for (int i = 0; i < times; ++i) {
-      wait(gap);
+      for (std::int64_t at = 10 * kMillisecond; at < gap; at += 10 * kMillisecond) {
+        add({now_ + at, kC});
+      }
+      add({now_ += gap, kA, attributes});
+      scorer_.closeWindow(now_);
     }
   }
   double slower() { return evidence(slower_); }
@@ -71,10 +66,13 @@ TEST_F(PaceTest, OtherGapsSpeakForIt) {
   }
 }
 
-TEST_F(PaceTest, ABitLongerIsNoOtherPace) {
+TEST_F(PaceTest, ABitLongerOrLostOnTheWayIsNoOtherPace) {
   add({now_, kA});
   wait(115 * kPeriod / 100, 100);
   wait(88 * kPeriod / 100, 100);
+  Attributes lost;
+  lost.step = Attributes::Step::kLostOne;
+  wait(kLong, 1, lost);
   EXPECT_EQ(slower(), 0);
   EXPECT_EQ(faster(), 0);
 }
@@ -101,15 +99,11 @@ TEST_F(PaceTest, WhatWaitedAndComesAtOnceIsNotFaster) {
   add({now_, kA});
   wait(kPeriod, 10);
   wait(5 * kPeriod);
-  for (int i = 0; i < 4; ++i) {
-    wait(kMillisecond);
-  }
+  wait(kMillisecond, 4);
   EXPECT_EQ(faster(), 0);
   wait(kPeriod, 10);
   wait(7 * kPeriod);  // as of a restart
-  for (int i = 0; i < 6; ++i) {
-    wait(kMillisecond);
-  }
+  wait(kMillisecond, 6);
   EXPECT_EQ(faster(), 0);
   wait(kPeriod, 3);
   wait(kPeriod / 4, 9);
@@ -138,29 +132,19 @@ TEST(SeldomPaceTest, WhoseGapsTellLittleNeedsAFlood) {
   EXPECT_EQ(leastOf(model, kFaster, kC), Tuning{}.least_told);
 }
 
-TEST_F(PaceTest, WhatIsLostOnTheWayIsNotSlower) {
-  add({now_, kA});
-  wait(kPeriod, 10);
-  for (std::int64_t at = 10 * kMillisecond; at < kLong; at += 10 * kMillisecond) {
-    add({now_ + at, kC});  // the robot does not stand still
-  }
-  Event event{now_ += kLong, kA};
-  event.attributes.step = Attributes::Step::kLostOne;
-  add(event);
-  EXPECT_EQ(slower(), 0);
-}
-
 TEST_F(PaceTest, ASumThatReachedItsCapHasNoLimit) {
   // As of a robot that sends at other rates in other modes: nobody knows how far it would grow.
   const Expectation& expected = model_->expectation(slower_);
   EXPECT_EQ(expected.limit(slower_, 199, 300), 300);
   EXPECT_TRUE(std::isnan(expected.limit(slower_, 200, 300)));
-  const std::vector<Coverage> coverage =
-      coverageOf(*model_, allLimits(*model_, kNone), {}, kWindow, false);
-  ASSERT_EQ(coverage[model_->componentIndex(kA)].blind.size(), 2U);
-  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].about, "slower pace");
-  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[1].about, "faster pace");
-  EXPECT_EQ(coverage[model_->componentIndex(kA)].blind[0].topic, kTypes[kA].scope);
+  const std::vector<Coverage::Blind> blind =
+      coverageOf(*model_, allLimits(*model_, kNone), {}, kWindow, false)
+          .at(model_->componentIndex(kA))
+          .blind;
+  ASSERT_EQ(blind.size(), 2U);
+  EXPECT_EQ(blind[0].about, "slower pace");
+  EXPECT_EQ(blind[1].about, "faster pace");
+  EXPECT_EQ(blind[0].topic, kTypes[kA].scope);
 }
 
 TEST_F(PaceTest, AfterARestartOfTheComponentTheSumIsForgotten) {

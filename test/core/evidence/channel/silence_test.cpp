@@ -17,12 +17,6 @@ class SilenceTest : public FollowedTest {
   std::size_t overdue_ = track(kOverdue, kA, kA);
 };
 
-TEST_F(SilenceTest, TheScorerReturnsTheGapOfTheType) {
-  EXPECT_EQ(scorer_.add({now_, kA}), std::nullopt);
-  EXPECT_EQ(scorer_.add({now_ + 5, kB}), std::nullopt);
-  EXPECT_EQ(scorer_.add({now_ + 7, kA}), 7);
-}
-
 TEST_F(SilenceTest, WhatNeverPausedHasNoLimit) {
   const Expectation& expectation = model_->expectation(overdue_);
   EXPECT_DOUBLE_EQ(expectation.limit(overdue_, 0, 1), 1);

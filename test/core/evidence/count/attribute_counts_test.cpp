@@ -2,14 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include "../attributed.h"
+#include "../recordings.h"
 #include "core/evidence/count/age_level.h"
 #include "core/evidence/count/repeats.h"
 
 namespace self_awareness::core::evidence {
 namespace {
-
-using Step = Attributes::Step;
 
 TEST(AgeLevel, WhatIsOlderThanOfLateIsARise) {
   AgeLevel level;
@@ -85,18 +83,6 @@ TEST(AttributeCounts, CountsWhatMessagesAre) {
   EXPECT_NEAR(toSeconds(faulty.longest_repeat), 95, 0.2);
 }
 
-TEST(AttributeCounts, WhatATypeSaysFirstDoesNotCount) {
-  Events events = messages(kA, kStart, kStart + 100 * kSecond, {});
-  const Events usual = events;
-  for (std::size_t k = 0; k < 50; ++k) {
-    events[k].attributes = {Attributes::kZeroStamp, sizeClass(1), Step::kLostMany, true};
-  }
-  EXPECT_EQ(countsOf({events}, 1).type(kA).attributes, countsOf({usual}, 1).type(kA).attributes);
-  events[50].attributes.age = Attributes::kZeroStamp;
-  EXPECT_FALSE(countsOf({events}, 1).type(kA).attributes ==
-               countsOf({usual}, 1).type(kA).attributes);
-}
-
 TEST(AttributeCounts, AStartIsThatOfTheRecording) {
   Statistics counts = countsOf({}, 1);
   Trainer trainer(counts, kWindow);
@@ -105,15 +91,6 @@ TEST(AttributeCounts, AStartIsThatOfTheRecording) {
   addAll(trainer, messages(kA, kStart, kStart + 100 * kSecond, {}));
   trainer.finish();
   EXPECT_EQ(counts.type(kA).attributes.counted(), 1000U);
-}
-
-TEST(ClassCounts, QuantilesAreClasses) {
-  const ClassCounts counts{{3, 1}, {7, 98}, {9, 1}};
-  EXPECT_EQ(total(counts), 100U);
-  EXPECT_EQ(quantile(counts, 0), 3);
-  EXPECT_EQ(quantile(counts, 0.5), 7);
-  EXPECT_EQ(quantile(counts, 1), 9);
-  EXPECT_EQ(quantile({}, 0.5), 0);
 }
 
 }  // namespace

@@ -61,24 +61,17 @@ TEST(DelayHistogram, TheMiddleLeavesOutAsManyOnBothSides) {
   EXPECT_EQ(delays.middle(1).last, 20U);
 }
 
-TEST(LogBins, AreFourAnOctaveFrom2500UsTo10240Ms) {
-  EXPECT_EQ(log_bins::bin(0), 0U);
-  EXPECT_EQ(log_bins::bin(-kNanosecondsPerSecond), 0U);
-  EXPECT_EQ(log_bins::bin(2499999), 0U);
-  EXPECT_EQ(log_bins::bin(2500000), 1U);
-  EXPECT_EQ(log_bins::bin(4999999), 4U);
-  EXPECT_EQ(log_bins::bin(5000000), 5U);
-  EXPECT_EQ(log_bins::bin(10239999999), log_bins::kBins - 2);
-  EXPECT_EQ(log_bins::bin(10240000000), log_bins::kBins - 1);
-  EXPECT_EQ(log_bins::bin(kLongestSilence), log_bins::kBins - 1);
-}
-
-TEST(LogBins, EveryEdgeBelongsToTheBinAboveIt) {
+TEST(LogBins, AreFourAnOctaveFrom2500UsTo10240MsEachWithItsLowerEdge) {
   EXPECT_EQ(log_bins::lowerEdge(0), 0);
+  EXPECT_EQ(log_bins::lowerEdge(1), 2500000);
+  EXPECT_EQ(log_bins::lowerEdge(5), 5000000);
+  EXPECT_EQ(log_bins::lowerEdge(log_bins::kBins - 1), 10240000000);
   for (std::size_t bin = 1; bin < log_bins::kBins; ++bin) {
     EXPECT_EQ(log_bins::bin(log_bins::lowerEdge(bin)), bin);
     EXPECT_EQ(log_bins::bin(log_bins::lowerEdge(bin) - 1), bin - 1);
   }
+  EXPECT_EQ(log_bins::bin(-kNanosecondsPerSecond), 0U);
+  EXPECT_EQ(log_bins::bin(kLongestSilence), log_bins::kBins - 1);
 }
 
 TEST(LogBins, TheMiddleIsTheGeometricMeanOfTheEdges) {

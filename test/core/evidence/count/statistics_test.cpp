@@ -10,7 +10,6 @@
 
 #include "../recordings.h"
 #include "core/evidence/count/log_bins.h"
-#include "self_awareness/core/evidence/count/pair_set.h"
 #include "self_awareness/core/evidence/count/partners.h"
 #include "self_awareness/core/stream/mode.h"
 
@@ -94,19 +93,6 @@ TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
   EXPECT_THROW(Trainer(counts, -kWindow), std::invalid_argument);
 }
 
-TEST(Statistics, TenAtOnceSayAsMuchAsOne) {
-  Events clumps;
-  for (const Event& first : irregular(kA, 0, 10000 * kSecond, 20 * kSecond, 1)) {
-    for (int i = 0; i < 10; ++i) {
-      clumps.push_back({first.stamp + i * kMillisecond, kA});
-    }
-  }
-  const Statistics counts =
-      countsOf({together({clumps, irregular(kB, 0, 10000 * kSecond, kSecond, 2)})});
-  EXPECT_NEAR(counts.dispersion(kA), 10, 1.5);
-  EXPECT_LT(counts.dispersion(kB), 1.2);
-}
-
 TEST(EvidenceTrainer, SaysWhatEveryRecordingShowed) {
   const Statistics counts =
       countsOf({inMilliseconds({{5000, kB}, {5400, kB}, {5500, kA}}),
@@ -123,14 +109,6 @@ TEST(EvidenceTrainer, SaysWhatEveryRecordingShowed) {
   EXPECT_EQ(second.longest_silence, 400 * kMillisecond);
   EXPECT_EQ(second.events, (std::vector<std::uint64_t>{1, 2}));
   EXPECT_EQ(second.longest_gaps, (std::vector<std::int64_t>{0, 400 * kMillisecond}));
-}
-
-TEST(EvidenceTrainer, WhatARecordingCutsOffIsNoGap) {
-  const Statistics counts =
-      countsOf({together({timer(kA, 0, 60 * kSecond, kSecond), timer(kB, 0, 30 * kSecond, kSecond),
-                          timer(kC, 20 * kSecond, 60 * kSecond, kSecond)})});
-  EXPECT_EQ(counts.recordings()[0].longest_gaps,
-            (std::vector<std::int64_t>{kSecond, kSecond, kSecond}));
 }
 
 TEST(EvidenceTrainer, WhatCameBeforeOnlyTellsWhenItCameFirst) {
@@ -172,18 +150,6 @@ TEST(EvidenceTrainer, TheModeOfBeforeLastsFromTheFirstEventOn) {
   EXPECT_EQ(counts.type(kOne).events, 3U) << "another recording does not know it";
 }
 
-TEST(EvidenceStatistics, FirstTimesMeetTheirTypes) {
-  Statistics other;
-  other.intern(kTypes[kC]);
-  other.intern(kTypes[kA]);
-  other.addRecording({7, 9, 0, 0, {1, 1}, {0, 0}, {5, 3}});
-  Statistics counts = countsOf({inMilliseconds({{1000, kB}})});
-  counts.merge(other);
-  ASSERT_EQ(counts.recordings().size(), 2U);
-  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{3, -1, 5}));
-  EXPECT_EQ(counts.recordings()[1].firsts, (std::vector<std::int64_t>{-1, 0}));
-}
-
 TEST(EvidenceStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
   const Events first = randomEvents(1, kA, kB);
   const Events second = randomEvents(2, kB, kC);
@@ -201,12 +167,14 @@ TEST(EvidenceStatistics, MergingKeepsTheRecordingsOfBothByTheirIds) {
       countsOf({inMilliseconds({{1000, 0}, {1300, 0}, {1350, 1}})}, {kTypes[kC], kTypes[kA]});
   counts.merge(other);
   ASSERT_EQ(counts.recordings().size(), 2U);
-  EXPECT_EQ(counts.recordings()[0].events, (std::vector<std::uint64_t>{1, 0, 2}));
-  EXPECT_EQ(counts.recordings()[0].longest_gaps,
-            (std::vector<std::int64_t>{0, 0, 300 * kMillisecond}));
-  EXPECT_EQ(counts.recordings()[0].longest_silence, 300 * kMillisecond);
-  EXPECT_EQ(counts.recordings()[0].longest_stall, 0);
+  const Statistics::Recording& first = counts.recordings()[0];
+  EXPECT_EQ(first.events, (std::vector<std::uint64_t>{1, 0, 2}));
+  EXPECT_EQ(first.firsts, (std::vector<std::int64_t>{350 * kMillisecond, -1, 0}));
+  EXPECT_EQ(first.longest_gaps, (std::vector<std::int64_t>{0, 0, 300 * kMillisecond}));
+  EXPECT_EQ(first.longest_silence, 300 * kMillisecond);
+  EXPECT_EQ(first.longest_stall, 0);
   EXPECT_EQ(counts.recordings()[1].events, (std::vector<std::uint64_t>{2, 1}));
+  EXPECT_EQ(counts.recordings()[1].firsts, (std::vector<std::int64_t>{0, 100 * kMillisecond}));
   EXPECT_EQ(counts.only({}).recordings().size(), 2U);
 }
 
@@ -255,37 +223,26 @@ TEST(Partners, KeepCountsOfAnySize) {
   EXPECT_THROW(partners.append(partner(12, 0, 1)), std::invalid_argument);
 }
 
-TEST(Partners, CountEventsBeyondAByteAndTwo) {
+TEST(Partners, CountOnAfterSomeWereKeptOnlyBeyondAByteAndTwo) {
   constexpr std::uint32_t kEvents = 70000;
-  Partners partners;
-  partners.makeAll(3);
-  for (std::uint32_t k = 0; k < kEvents; ++k) {
-    partners.count({7, k < 300 ? std::uint8_t{1} : std::uint8_t{49}, Partners::kNotSeen},
-                   {1, 0, 0});
-  }
-  EXPECT_EQ(partners.at(0).delays[7], kEvents);
-  EXPECT_EQ(partners.at(0).answers, kEvents);
-  EXPECT_EQ(partners.at(1).delays[1], 300U);
-  EXPECT_EQ(partners.at(1).delays[49], kEvents - 300);
-  EXPECT_EQ(partners.at(1).answers, 0U);
-  EXPECT_EQ(partners.total(2), 0U);
-}
-
-TEST(Partners, CountOnAfterSomeWereKeptOnly) {
   Partners partners;
   partners.append(partner(1, 5, 250));
   partners.makeAll(3);
-  for (int k = 0; k < 10; ++k) {
-    partners.count({3, 3, 3}, {0, 1, 0});
+  for (std::uint32_t k = 0; k < kEvents; ++k) {
+    const std::uint8_t bin = k < 300 ? 3 : 49;
+    partners.count({3, bin, Partners::kNotSeen}, {0, 1, 0});
   }
   ASSERT_EQ(partners.size(), 3U);
-  EXPECT_TRUE(partners.at(0) == partner(0, 0, 10));
-  EXPECT_TRUE(partners.at(1) == partner(1, 15, 260));
+  EXPECT_TRUE(partners.at(0) == partner(0, 0, kEvents));
+  EXPECT_EQ(partners.at(1).delays[3], 550U);
+  EXPECT_EQ(partners.at(1).delays[49], kEvents - 300);
+  EXPECT_EQ(partners.at(1).answers, kEvents + 5);
+  EXPECT_EQ(partners.total(2), 0U);
   partners.makeAll(5);
   partners.count({3, Partners::kNotSeen, 3, 4}, {1, 2});  // two events, of the first two types
-  EXPECT_EQ(partners.at(0).delays[3], 12U);
+  EXPECT_EQ(partners.at(0).delays[3], kEvents + 2);
   EXPECT_EQ(partners.at(1).delays[4], 1U);
-  EXPECT_EQ(partners.at(1).answers, 17U);
+  EXPECT_EQ(partners.at(1).answers, kEvents + 7);
   EXPECT_THROW(partners.count({3, 3, 3}, {0, 0}), std::invalid_argument);
   EXPECT_EQ(partners.total(4), 0U);
 }
@@ -304,19 +261,6 @@ TEST(Partners, AddUpAndStayAtTheLargestNumber) {
     EXPECT_TRUE(both.at(1) == partner(1, 5, 300));
     EXPECT_TRUE(both.at(2) == partner(4, 2, kMost));
   }
-}
-
-TEST(PairSet, HoldsWhatWasAdded) {
-  PairSet pairs;
-  EXPECT_TRUE(pairs.empty());
-  pairs.add(70, 3);
-  pairs.add(2, 90);
-  EXPECT_TRUE(pairs.contains(70, 3));
-  EXPECT_FALSE(pairs.contains(3, 70));
-  EXPECT_FALSE(pairs.contains(500, 500));
-  std::vector<EventId> visited;
-  pairs.forEach([&](EventId to, EventId from) { visited.insert(visited.end(), {to, from}); });
-  EXPECT_EQ(visited, (std::vector<EventId>{2, 90, 70, 3}));
 }
 
 }  // namespace

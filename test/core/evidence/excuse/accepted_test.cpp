@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../../verdict/accepted.h"
-#include "../attributed.h"
+#include "../recordings.h"
 #include "core/evidence/channel/scorer.h"
 
 namespace self_awareness::core::evidence {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "../../verdict/accepted.h"
-#include "../moment.h"
+#include "../tracks.h"
 
 /// What holds for all excuses, whatever a robot does (docs/method.md, section 6).
 namespace self_awareness::core::evidence {
@@ -143,29 +143,6 @@ TEST_F(ExcusesTest, TheirOrderDoesNotMatterButThatWhatIsAcceptedIsKnownFirst) {
        {Excused::kAllSilent, Excused::kAccepted, Excused::kNewMode, Excused::kBusy}) {
     EXPECT_GT(seen[reason], 10) << static_cast<int>(reason);
   }
-}
-
-TEST_F(ExcusesTest, WhatBeganBeforeAnExcuseIsNotCovered) {
-  int excuses = 0;
-  for (unsigned seed = 0; seed < 1000; ++seed) {
-    draw(seed);
-    accepted_ = {};
-    const std::size_t number = allExcuses(model_, graph_).size();
-    for (std::size_t each = 0; each < number; ++each) {
-      std::vector<Excess> excesses = drawn_;
-      const Judgement told = excuse({each}, excesses);
-      excuses += told.busy || told.silent ? 1 : 0;
-      for (const Excess& excess : excesses) {
-        if (excess.excused != Excused::kNo) {
-          ASSERT_TRUE(told.busy || told.silent) << seed;
-          EXPECT_TRUE(
-              beganSince(told.busy ? told.busy->since : told.silent->since, excess, *model_))
-              << seed;
-        }
-      }
-    }
-  }
-  EXPECT_GT(excuses, 50);
 }
 
 }  // namespace

@@ -30,21 +30,44 @@ class NewModeTest : public StoppedTest {
     graph_->connect("/laser", "/scan", "/slam");
     learn(robot);
   }
-  std::optional<Silent> excuse(const std::vector<std::int64_t>& ages, std::int64_t now = kEnd) {
+  using Ages = std::vector<std::int64_t>;
+  struct Case {
+    std::string what;
+    Ages ages;
+    bool is_mode;
+    EventId of;
+    double share;
+  };
+
+  std::optional<Silent> excuse(const Ages& ages, std::int64_t now = kEnd) {
     return found(ages, now).silent;
   }
   /// Whether that is a mode which is accepted.
-  bool isNormal(const std::vector<std::int64_t>& ages, std::int64_t now = kEnd) {
+  bool isNormal(const Ages& ages, std::int64_t now = kEnd) {
     return !found(ages, now).mode.empty();
   }
-  void accept(const Strings& together) { together_->accept(allOf({acceptedMode(together)})); }
+  /// Accepts that the four stop together.
+  void accept() { together_->accept(allOf({acceptedMode(four_)})); }
+  void expect(const std::vector<Case>& cases, bool is_accepted) {
+    for (const Case& each : cases) {
+      SCOPED_TRACE(each.what);
+      const Judgement judgement = found(each.ages);
+      EXPECT_EQ(judgement.silent.has_value(), each.is_mode && !is_accepted);
+      EXPECT_EQ(!judgement.mode.empty(), each.is_mode && is_accepted);
+      EXPECT_EQ(share(each.of), each.share);
+      together_->restart();
+    }
+  }
+
+  const Strings four_{"/arm", "/laser", "/lidar", "/wheels"};
+  const Ages stopped_{kAgo, kAgo, kAgo, kAgo, 0, 0};
 };
 
 TEST_F(NewModeTest, NobodyIsToBlameWhereFourThatDoNotHearEachOtherStopTogether) {
   const std::optional<Silent> silent = excuse({kAgo, kAgo, kAgo + kSecond / 50, kAgo, 0, 0});
   ASSERT_TRUE(silent);
   EXPECT_TRUE(silent->others_go_on);
-  EXPECT_EQ(silent->components, (Strings{"/arm", "/laser", "/lidar", "/wheels"}));
+  EXPECT_EQ(silent->components, four_);
   EXPECT_EQ(silent->since, kEnd - kAgo);
   EXPECT_EQ(shares_, std::vector<double>(shares_.size(), 0));
 }
@@ -58,8 +81,7 @@ TEST_F(NewModeTest, WhoWasMissedWhenTheOthersCameLastDiedBeforeThem) {
 }
 
 TEST_F(NewModeTest, WhoseVictimWasMissedBeforeTheOthersStoppedDiedBeforeThem) {
-  const std::vector<std::int64_t> ages{kAgo, kAgo + kSecond / 50, kAgo,
-                                       kAgo, kAgo + kSecond / 50, 0};
+  const Ages ages{kAgo, kAgo + kSecond / 50, kAgo, kAgo, kAgo + kSecond / 50, 0};
   EXPECT_TRUE(excuse(ages));
   beginAnew();
   abnormal_[kSlam] = kEnd - kAgo - kMillisecond;
@@ -68,35 +90,21 @@ TEST_F(NewModeTest, WhoseVictimWasMissedBeforeTheOthersStoppedDiedBeforeThem) {
 }
 
 TEST_F(NewModeTest, FourThatStopAtOneTimeAreExcusedWithTheirVictims) {
-  struct Case {
-    std::string what;
-    std::vector<std::int64_t> ages;
-    bool is_mode;
-    EventId of;
-    double share;
-  };
-  for (const Case& each : std::vector<Case>{
-           {"three are faults", {kAgo, kAgo, kAgo, 0, 0, 0}, false, 0, 2},
-           {"a victim is none of the four", {kAgo, kAgo, kAgo, 0, kAgo, 0}, false, 0, 2},
-           {"but excused with them", {kAgo, kAgo, kAgo, kAgo, kAgo, 0}, true, kSlam, 0},
-           {"also one that stops later", {kAgo, kAgo, kAgo, kAgo, kAgo / 2, 0}, true, kSlam, 0},
-           {"not before, though it hears", {kAgo, kAgo, kAgo, kAgo, 2 * kAgo, 0}, true, kSlam, 2},
-           {"nor who hears none of them", {kAgo, kAgo, kAgo, kAgo, 0, kAgo / 2}, true, kImu, 2},
-           {"nor are they four then", {kAgo, kAgo, kAgo, 0, 0, kAgo / 2}, false, kImu, 2},
-           {"where nobody is heard since, all are silent",
-            {kAgo, kAgo, kAgo, kAgo, kAgo - kSecond, kAgo - 2 * kSecond},
-            false,
-            0,
-            2}}) {
-    EXPECT_EQ(excuse(each.ages).has_value(), each.is_mode) << each.what;
-    EXPECT_EQ(share(each.of), each.share) << each.what;
-    together_->restart();
-  }
+  expect({{"three are faults", {kAgo, kAgo, kAgo, 0, 0, 0}, false, 0, 2},
+          {"a victim is none of the four", {kAgo, kAgo, kAgo, 0, kAgo, 0}, false, 0, 2},
+          {"but excused with them", {kAgo, kAgo, kAgo, kAgo, kAgo, 0}, true, kSlam, 0},
+          {"also one that stops later", {kAgo, kAgo, kAgo, kAgo, kAgo / 2, 0}, true, kSlam, 0},
+          {"not before, though it hears", {kAgo, kAgo, kAgo, kAgo, 2 * kAgo, 0}, true, kSlam, 2},
+          {"nor who hears none of them", {kAgo, kAgo, kAgo, kAgo, 0, kAgo / 2}, true, kImu, 2},
+          {"nor are they four then", {kAgo, kAgo, kAgo, 0, 0, kAgo / 2}, false, kImu, 2}},
+         false);
+  const Ages all{kAgo, kAgo, kAgo, kAgo, kAgo - kSecond, kAgo - 2 * kSecond};
+  EXPECT_FALSE(excuse(all)) << "where nobody is heard since, all are silent";
 }
 
 TEST_F(NewModeTest, WhoMayBeSilentIsNoneOfTheFour) {
   moment_->may_be_silent[2] = true;
-  EXPECT_FALSE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
+  EXPECT_FALSE(excuse(stopped_));
   EXPECT_EQ(share(0), 2);
   const std::optional<Silent> silent = excuse({kAgo, kAgo, kAgo, kAgo, 0, kAgo});
   ASSERT_TRUE(silent);
@@ -111,61 +119,54 @@ TEST_F(NewModeTest, WhatWasAModeBeforeAllFellSilentStaysOne) {
   EXPECT_EQ(share(0), 0) << "nor is who stopped before to blame";
 }
 
-TEST_F(NewModeTest, TheGraphMayGrow) {
-  EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
-  together_->restart();
+TEST_F(NewModeTest, WhoHearsAnotherOrMayDoSoIsNoneOfTheFour) {
   graph_->connect("/wheels", "/odom", "/arm");
-  EXPECT_FALSE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
-}
-
-TEST_F(NewModeTest, WithoutAGraphTheyMayBeVictims) {
+  EXPECT_FALSE(excuse(stopped_)) << "the graph may grow";
   graph_ = std::make_shared<SourceGraph>();
   beginAnew();
-  EXPECT_FALSE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
+  EXPECT_FALSE(excuse(stopped_)) << "without a graph, they may be victims";
 }
 
 TEST_F(NewModeTest, WhoComesBackLastIsExcusedForAMoment) {
-  EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
+  EXPECT_TRUE(excuse(stopped_));
   EXPECT_TRUE(excuse({kAgo + kSecond, 0, 0, 0, 0, 0}, kEnd + kSecond));
   EXPECT_EQ(share(0), 0);
   EXPECT_FALSE(excuse({kAgo + 4 * kSecond, 0, 0, 0, 0, 0}, kEnd + 4 * kSecond));
   EXPECT_EQ(share(0), 2);
-  EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
+  EXPECT_TRUE(excuse(stopped_));
   together_->restart();
   EXPECT_FALSE(excuse({kAgo + kSecond, 0, 0, 0, 0, 0}, kEnd + kSecond)) << "after a restart";
 }
 
 TEST_F(NewModeTest, WhatIsAcceptedIsNormal) {
-  EXPECT_FALSE(isNormal({kAgo, kAgo, kAgo, kAgo, 0, 0})) << "it is not yet";
-  accept({"/arm", "/laser", "/lidar", "/slam", "/wheels"});
-  EXPECT_TRUE(isNormal({kAgo, kAgo, kAgo, kAgo, 0, 0}));
+  EXPECT_FALSE(isNormal(stopped_)) << "it is not yet";
+  accept();
+  EXPECT_TRUE(isNormal(stopped_));
   EXPECT_EQ(shares_, std::vector<double>(shares_.size(), 0));
-  EXPECT_TRUE(isNormal({kAgo, kAgo, kAgo, kAgo, kAgo, 0}));
   EXPECT_TRUE(isNormal({kAgo + kSecond, 0, 0, 0, 0, 0}, kEnd + kSecond)) << "it comes back last";
   EXPECT_EQ(share(0), 0);
 }
 
-TEST_F(NewModeTest, WhoGoesOnInAnAcceptedModeIsJudged) {
+TEST_F(NewModeTest, OfAnAcceptedModeWhoGoesOnAndWhoDiesIsJudged) {
   constexpr std::int64_t kBegan = 90 * kSecond;
-  accept({"/arm", "/laser", "/lidar", "/wheels"});
-  EXPECT_TRUE(isNormal({kBegan, kBegan, kBegan, kBegan, 40 * kSecond, 0}));
-  EXPECT_EQ(share(kSlam), 0) << "it hears /laser, and has stopped within a minute";
-  EXPECT_TRUE(isNormal({kBegan, kBegan, kBegan, kBegan, 5 * kSecond, 0}));
-  EXPECT_EQ(share(kSlam), 2) << "it went on without /laser";
-  EXPECT_EQ(share(0), 0);
-}
-
-TEST_F(NewModeTest, AnotherFaultInAnAcceptedModeIsNoNewMode) {
-  accept({"/arm", "/laser", "/lidar", "/wheels"});
-  const std::vector<std::int64_t> imu_died{kAgo, kAgo, kAgo, kAgo, 0, kAgo / 2};
-  EXPECT_TRUE(isNormal(imu_died));
-  EXPECT_EQ(share(kImu), 2);
-  EXPECT_FALSE(excuse(imu_died));
-  EXPECT_EQ(share(kImu), 2);
+  constexpr std::int64_t kGap = 100 * kMillisecond;
+  const Ages faults_of_more{kAgo, kAgo, kAgo, kAgo, 0, kAgo};
+  accept();
+  expect({{"its victim", {kBegan, kBegan, kBegan, kBegan, 40 * kSecond, 0}, true, kSlam, 0},
+          {"went on without it", {kBegan, kBegan, kBegan, kBegan, 5 * kSecond, 0}, true, kSlam, 2},
+          {"another one dies", {kAgo, kAgo, kAgo, kAgo, 0, kAgo / 2}, true, kImu, 2},
+          {"the first one missed", {30 * kGap, 29 * kGap, 28 * kGap, 27 * kGap, 0, 0}, true, 0, 0},
+          {"two heard since", {10 * kGap, 9 * kGap, kGap / 10, kGap / 10, 0, 0}, false, 0, 2},
+          {"a death", {kAgo, 0, 0, 0, 0, 0}, false, 0, 2},
+          {"three are faults", {kAgo, kAgo, kAgo, 0, 0, 0}, false, 0, 2}},
+         true);
+  EXPECT_FALSE(isNormal({kAgo, kAgo, kAgo, 0, 0, kAgo}));
+  together_->restart();
+  EXPECT_TRUE(excuse(faults_of_more)) << "that of more is new";
 }
 
 TEST_F(NewModeTest, AnAcceptedModeDoesNotHideThatAllFellSilent) {
-  accept({"/arm", "/laser", "/lidar", "/wheels"});
+  accept();
   const Judgement judgement = found({kAgo, kAgo, kAgo, kAgo, kAgo, kAgo});
   ASSERT_TRUE(judgement.silent);
   EXPECT_FALSE(judgement.silent->others_go_on);
@@ -173,38 +174,12 @@ TEST_F(NewModeTest, AnAcceptedModeDoesNotHideThatAllFellSilent) {
   EXPECT_EQ(excused_, std::vector<Excused>(kRobot.size(), Excused::kAllSilent));
 }
 
-TEST_F(NewModeTest, WhenAnAcceptedModeBeginsTheFirstOneMissedIsNotDead) {
-  constexpr std::int64_t kGap = 100 * kMillisecond;
-  accept({"/arm", "/laser", "/lidar", "/wheels"});
-  EXPECT_TRUE(isNormal({30 * kGap, 29 * kGap, 28 * kGap, 27 * kGap, 0, 0}));
-  together_->restart();
-  const std::vector<std::int64_t> begun{10 * kGap, 9 * kGap, kGap / 10, kGap / 10, 0, 0};
-  EXPECT_FALSE(isNormal(begun)) << "two were heard since";
-  EXPECT_EQ(share(0), 2);
-  EXPECT_TRUE(isNormal({15 * kGap, 14 * kGap, 15 * kGap, 14 * kGap, 0, 0}));
-  EXPECT_EQ(share(0), 0);
-}
-
-TEST_F(NewModeTest, ADeathAndAnotherModeAreNotAccepted) {
-  accept({"/arm", "/laser", "/lidar", "/wheels"});
-  for (const std::vector<std::int64_t>& faults :
-       {std::vector<std::int64_t>{kAgo, 0, 0, 0, 0, 0}, {kAgo, kAgo, kAgo, 0, 0, 0}}) {
-    EXPECT_FALSE(isNormal(faults));
-    EXPECT_EQ(share(0), 2);
-    together_->restart();
-  }
-  EXPECT_FALSE(isNormal({kAgo, kAgo, kAgo, 0, 0, kAgo}));
-  together_->restart();
-  EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, 0, kAgo})) << "that of more is new";
-}
-
 TEST_F(NewModeTest, AnAcceptedOneIsNeitherSuspiciousNorAShareOfALimit) {
-  const Strings stopping{"/arm", "/laser", "/lidar", "/wheels"};
   Limits limits = allLimits(*model_, kNone);
   Events events;
   for (EventId id = 0; id < kRobot.size(); ++id) {
     ofTrack(limits.tracks, *model_, kOverdue, id) = 2;
-    const std::int64_t end = id < stopping.size() ? 20 * kSecond : 40 * kSecond;
+    const std::int64_t end = id < four_.size() ? 20 * kSecond : 40 * kSecond;
     events = together({events, timer(id, 0, end, 100 * kMillisecond)});
   }
   for (const bool is_accepted : {false, true}) {
@@ -216,7 +191,7 @@ TEST_F(NewModeTest, AnAcceptedOneIsNeitherSuspiciousNorAShareOfALimit) {
           largest =
               std::max(largest, *std::max_element(shares.tracks.begin(), shares.tracks.end()));
         });
-    asked->accept(is_accepted ? allOf({acceptedMode(stopping)}) : Acceptances{});
+    asked->accept(is_accepted ? allOf({acceptedMode(four_)}) : Acceptances{});
     judge(std::move(asked), events, [&](const Verdict& verdict) {
       if (!unusual && (verdict.abnormal || verdict.suspicion || verdict.silent)) {
         unusual = verdict.window->start;
@@ -226,7 +201,7 @@ TEST_F(NewModeTest, AnAcceptedOneIsNeitherSuspiciousNorAShareOfALimit) {
     EXPECT_EQ(unusual.has_value(), !is_accepted);
     EXPECT_LT(unusual.value_or(0), 23 * kSecond);
     EXPECT_EQ(largest > 1, !is_accepted);
-    EXPECT_EQ(mode, is_accepted ? stopping : Strings{});
+    EXPECT_EQ(mode, is_accepted ? four_ : Strings{});
   }
 }
 
@@ -366,38 +341,27 @@ TEST_F(CompanyOfOthersTest, ThatGoesOnMakesThemNoFaultEither) {
   EXPECT_EQ(shares_, std::vector<double>(shares_.size(), 0));
 }
 
-// 150 topics of 60 nodes, which all hear a root, and one that hears nobody.
+// 150 that all hear a root and others, and one that hears nobody.
 class NewModeOfALargeRobotTest : public StoppedTest {
  protected:
-  NewModeOfALargeRobotTest() : StoppedTest(types()) {
+  NewModeOfALargeRobotTest() : StoppedTest(numberedTypes(kRoot + 2)) {
     for (EventId id = 0; id < kRoot; ++id) {
-      const EventId node = id % kNodes;
-      graph_->connect(name(node / 2), types_[node / 2].scope, name(node));
-      graph_->connect(name(node), types_[id].scope, name((7 * node + id) % kNodes));
-      graph_->connect("/root", "/root/out", name(node));
+      for (const EventId from : {kRoot, id / 2, (7 * id + 3) % kRoot}) {
+        graph_->connect(types_[from].source, types_[from].scope, types_[id].source);
+      }
     }
     Tuning tuning;
     tuning.without = {kPairs, kSlower, kFaster, kDeadlines};
-    learn(running, *graph_, tuning);
+    learn(
+        [](std::int64_t start, unsigned /*seed*/) {
+          Events events;
+          for (EventId id = 0; id <= kRoot + 1; ++id) {
+            events = together({events, timer(id, start, start + 20 * kSecond, kSecond / 5)});
+          }
+          return events;
+        },
+        *graph_, tuning);
   }
-  static std::string name(EventId node) { return "/c" + std::to_string(node); }
-  static std::vector<EventType> types() {
-    std::vector<EventType> types;
-    for (EventId id = 0; id < kRoot; ++id) {
-      types.push_back({name(id % kNodes), "/t" + std::to_string(id), "T"});
-    }
-    types.push_back({"/root", "/root/out", "T"});
-    types.push_back({"/alive", "/alive/out", "T"});
-    return types;
-  }
-  static Events running(std::int64_t start, unsigned /*seed*/) {
-    Events events;
-    for (EventId id = 0; id <= kRoot + 1; ++id) {
-      events = together({events, timer(id, start, start + 20 * kSecond, 200 * kMillisecond)});
-    }
-    return events;
-  }
-  static constexpr EventId kNodes = 60;
   static constexpr EventId kRoot = 150;
 };
 

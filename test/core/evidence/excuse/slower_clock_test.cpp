@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../judged.h"
@@ -101,18 +102,14 @@ TEST_F(SlowerClockTest, WhenItIsOverNobodyIsLeft) {
   EXPECT_LT(told[0].end, 2 * kFault + 30 * kSecond);
 }
 
-TEST_F(SlowerClockTest, InRealTimeItIsTheirs) {
-  const Alarm alarm = alarmIn(robot(kYears, {1, 2.5, 2.5, 1}));
-  EXPECT_EQ(alarm.kind, Kind::kFast);
-  EXPECT_EQ(alarm.culprit, "/c1");
-}
-
-TEST_F(SlowerClockTest, OtherFactorsAreNoClock) {
-  EXPECT_EQ(alarmIn(robot(kSecond, {1, 1.6, 4, 1})).kind, Kind::kFast);
-}
-
-TEST_F(SlowerClockTest, WhoAnswersDoesWhatItIsAsked) {
-  EXPECT_EQ(alarmIn(robot(kSecond, {1, 1, 1, 2.5})).culprit, "/c3");
+TEST_F(SlowerClockTest, ItIsTheirsInRealTimeByOtherFactorsOrWhereOthersAnswer) {
+  for (const auto& [events, culprit] : {std::pair{robot(kYears, {1, 2.5, 2.5, 1}), "/c1"},
+                                        {robot(kSecond, {1, 1.6, 4, 1}), "/c1"},
+                                        {robot(kSecond, {1, 1, 1, 2.5}), "/c3"}}) {
+    const Alarm alarm = alarmIn(events);
+    EXPECT_EQ(alarm.kind, Kind::kFast) << culprit;
+    EXPECT_EQ(alarm.culprit, culprit);
+  }
 }
 
 }  // namespace

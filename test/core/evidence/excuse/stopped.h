@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "../moment.h"
+#include "../tracks.h"
 #include "core/evidence/excuse/excuses.h"
 #include "core/evidence/excuse/new_mode.h"
 #include "core/evidence/excuse/silent_together.h"

@@ -17,7 +17,7 @@ std::size_t exceeded(const std::vector<Part>& parts, const std::vector<double>& 
   return left_out.exceeded();
 }
 
-TEST(LeftOut, AStartIsJudgedByTheOthers) {
+TEST(LeftOut, AStartIsJudgedByTheOthersAndAPartOfALongOneByItsOtherParts) {
   const std::vector<Part> parts{{0, 1}, {0, 1}, {1, 2}, {2, 2}};
   EXPECT_EQ(exceeded(parts, {2, 2, 2, 3}), 0U);
   EXPECT_EQ(exceeded(parts, {2, 2, 2, 3.1}), 1U);
@@ -26,12 +26,9 @@ TEST(LeftOut, AStartIsJudgedByTheOthers) {
   EXPECT_EQ(exceeded(parts, {0.9, 0, 0, 0}), 0U) << "below the least limit";
   EXPECT_EQ(exceeded(parts, {1.1, 0, 0, 0}), 1U);
   EXPECT_EQ(exceeded(parts, {5, 0, 0, 0}, 0), 0U) << "the others know nothing of it";
-}
-
-TEST(LeftOut, APartOfALongStartIsJudgedByTheOtherParts) {
-  const std::vector<Part> parts{{0, 1}, {0, 1}, {0, 1}, {1, 1}};
-  EXPECT_EQ(exceeded(parts, {4, 2, 2, 2}), 1U);
-  EXPECT_EQ(exceeded(parts, {4, 4, 2, 2}), 0U);
+  const std::vector<Part> long_start{{0, 1}, {0, 1}, {0, 1}, {1, 1}};
+  EXPECT_EQ(exceeded(long_start, {4, 2, 2, 2}), 1U);
+  EXPECT_EQ(exceeded(long_start, {4, 4, 2, 2}), 0U);
 }
 
 TEST(LeftOut, WhatIsMostOfAllIsNotJudged) {
@@ -42,19 +39,17 @@ TEST(LeftOut, WhatIsMostOfAllIsNotJudged) {
   EXPECT_DOUBLE_EQ(LeftOut({{0, 5}}).hours(), 5) << "nothing can be left out";
 }
 
-TEST(LeftOut, APartCountsOnceWhateverNumberOfTracksExceed) {
-  LeftOut left_out({{0, 1}, {1, 1}, {2, 1}});
-  for (int k = 0; k < 5; ++k) {
+TEST(LeftOut, APartCountsOnceAndWhatMostStartsDoNotAgreeOnTellsNothingAboutOthers) {
+  const std::vector<Part> parts{{0, 1}, {1, 1}, {2, 1}};
+  LeftOut left_out(parts);
+  for (int k = 0; k < 5; ++k) {  // tracks
     left_out.add({9, 2, 2}, {9, 2, 2}, 1, 1.5);
   }
   left_out.add({2, 9, 2}, {2, 9, 2}, 1, 1.5);
   EXPECT_EQ(left_out.exceeded(), 2U);
-}
-
-TEST(LeftOut, WhatMostStartsDoNotAgreeOnTellsNothingAboutOthers) {
-  LeftOut left_out({{0, 1}, {1, 1}, {2, 1}});
-  left_out.add({9, 4, 2}, {2, 4, 2}, 1, 1.5);
-  EXPECT_EQ(left_out.exceeded(), 2U) << "the first, and by the agreed also the second";
+  LeftOut agreed(parts);
+  agreed.add({9, 4, 2}, {2, 4, 2}, 1, 1.5);
+  EXPECT_EQ(agreed.exceeded(), 2U) << "the first, and by the agreed also the second";
 }
 
 TEST(LeftOut, TheHighestRateIsThatOfRobotsAndOfWhatOneShows) {

@@ -107,18 +107,14 @@ TEST(Samples, AreRobotsWhereTheyAreSeveralElseStarts) {
 }
 
 TEST(Relations, AsManyStartsAreEnoughAsItSaysAreNeeded) {
-  const std::vector<std::int64_t> phases(10, 20 * kMillisecond);
-  const Statistics one = timers({phases.front()});
-  const std::size_t needed = delays(one).starts_needed;
-  ASSERT_GT(needed, 1U);
-  ASSERT_LT(needed, phases.size());
-  const auto watchedAfter = [&](std::size_t starts) {
-    const Statistics counts =
-        timers({phases.begin(), phases.begin() + static_cast<std::ptrdiff_t>(starts)});
-    return delays(counts).watched;
+  const auto after = [](std::size_t starts) {
+    return delays(timers(std::vector<std::int64_t>(starts, 20 * kMillisecond)));
   };
-  EXPECT_FALSE(watchedAfter(needed - 1));
-  EXPECT_TRUE(watchedAfter(needed));
+  const std::size_t needed = after(1).starts_needed;
+  ASSERT_GT(needed, 1U);
+  ASSERT_LT(needed, 10U);
+  EXPECT_FALSE(after(needed - 1).watched);
+  EXPECT_TRUE(after(needed).watched);
 }
 
 TEST(Relations, TimersThatDoNotAgreeAreNotWatchedAfterAnyNumberOfStarts) {
@@ -126,34 +122,16 @@ TEST(Relations, TimersThatDoNotAgreeAreNotWatchedAfterAnyNumberOfStarts) {
   for (std::int64_t start = 0; start < 20; ++start) {
     phases.push_back((start * 37 % 100) * kMillisecond);
   }
-  const Statistics counts = timers(phases);
-  const Relation relation = delays(counts);
+  const Relation relation = delays(timers(phases));
   EXPECT_EQ(relation.starts, 20U);
   EXPECT_GT(relation.spread, 0.8);
   EXPECT_FALSE(relation.watched);
 }
 
-TEST(Relations, RecordingsThatWereNotTrainedOnCountIfTheyAreOfOtherStarts) {
-  const Statistics counts = timers({20 * kMillisecond});
-  const Relations relations(counts, kNoGraph, kTuning);
-  std::vector<Span> more{{10 * kSecond, 30 * kSecond}};
-  EXPECT_EQ(relations.delays(kA, kB, more).starts, 1U);
-  for (int start = 1; start < 6; ++start) {
-    more.push_back({start * kStart, start * kStart + kLength});
-  }
-  EXPECT_EQ(relations.delays(kA, kB, more).starts, 6U);
-  EXPECT_TRUE(relations.delays(kA, kB, more).watched);
-}
-
 TEST(Relations, AStartWithFewEventsSaysNothing) {
   const Events full =
       together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)});
-  Events few;
-  for (const Event& event : full) {
-    if (event.stamp < kSecond / 2) {
-      few.push_back(event);
-    }
-  }
+  const Events few = without(full, [](const Event& event) { return event.stamp >= kSecond / 2; });
   const Statistics counts = countsOf({full, later(few), later(full, 2 * kStart)}, 2);
   EXPECT_EQ(delays(counts).starts, 2U);
 }
@@ -178,29 +156,28 @@ TEST(Relations, APhaseAroundZeroIsAsNarrowAsAnyOther) {
 }
 
 TEST(Relations, WhoComesLateInAPeriodMayBeTheOneThatAsks) {
-  const std::vector<std::int64_t> early(8, 30 * kMillisecond);
-  const std::vector<std::int64_t> late(8, 80 * kMillisecond);
-  const Statistics soon = timers(early);
-  const Statistics afterwards = timers(late);
+  const Statistics soon = timers(std::vector<std::int64_t>(8, 30 * kMillisecond));
+  const Statistics late = timers(std::vector<std::int64_t>(8, 80 * kMillisecond));
   EXPECT_TRUE(delays(soon).watched);
   EXPECT_FALSE(delays(soon, kNoGraph, kB, kA).watched);
-  const Relation relation = delays(afterwards);
-  EXPECT_FALSE(relation.watched);
-  EXPECT_EQ(relation.starts_needed, 0U) << "no number of starts helps";
-  const SourceGraph graph = connected("/x");
-  EXPECT_TRUE(delays(afterwards, graph).watched);
+  EXPECT_FALSE(delays(late).watched);
+  EXPECT_EQ(delays(late).starts_needed, 0U) << "no number of starts helps";
+  EXPECT_TRUE(delays(late, connected("/x")).watched);
 }
 
 TEST(Relations, AMessageThatGetsThereIsAReason) {
   const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond});
   ASSERT_FALSE(delays(counts).watched);
-  const SourceGraph graph = connected("/x");
-  const Relation there = delays(counts, graph);
+  const Relation there = delays(counts, connected("/x"));
   EXPECT_TRUE(there.reaches && there.watched);
-  const Relation back = delays(counts, graph, kB, kA);
+  const Relation back = delays(counts, connected("/x"), kB, kA);
   EXPECT_FALSE(back.reaches || back.watched) << "B's messages do not get to A";
-  const SourceGraph other = connected("/other");
-  EXPECT_FALSE(delays(counts, other).reaches) << "it hears another topic";
+  EXPECT_FALSE(delays(counts, connected("/other")).reaches) << "it hears another topic";
+  // Of one node, of which nothing else is known.
+  const EventType other_topic{"/a", "/y", "T"};
+  EXPECT_TRUE(delays(countsOf({}, {kTypes[kA], other_topic})).reaches);
+  EXPECT_FALSE(delays(countsOf({}, {{"", "/x", "T"}, {"", "/y", "T"}})).reaches)
+      << "who sends is not known";
 }
 
 TEST(Relations, WhoAnswersToEveryFourthMessageHasItsOwnPeriod) {
@@ -216,8 +193,7 @@ TEST(Relations, WhoAnswersToEveryFourthMessageHasItsOwnPeriod) {
     starts.push_back(later(together({asked, answers}), start * kStart));
   }
   const Statistics counts = countsOf(starts, 2);
-  const SourceGraph graph = connected("/x");
-  const Relation reached = delays(counts, graph);
+  const Relation reached = delays(counts, connected("/x"));
   EXPECT_LT(reached.spread, 0.25);
   EXPECT_TRUE(reached.watched);
   const Relation alone = delays(counts);
@@ -225,22 +201,12 @@ TEST(Relations, WhoAnswersToEveryFourthMessageHasItsOwnPeriod) {
   EXPECT_FALSE(alone.watched);
   // Of two topics of one node, nobody knows what comes upon what.
   const Statistics own = countsOf(starts, {{"/a", "/x", "T"}, {"/a", "/y", "T"}});
-  EXPECT_GT(delays(own, graph).spread, 0.6);
-}
-
-TEST(Relations, WhatOneNodePublishesIsAReason) {
-  const Statistics counts = countsOf(
-      {together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)})},
-      {{"/a", "/x", "T"}, {"/a", "/y", "T"}});
-  EXPECT_TRUE(delays(counts).reaches);
-  const Statistics unknown = countsOf({}, {{"", "/x", "T"}, {"", "/y", "T"}});
-  EXPECT_FALSE(delays(unknown).reaches) << "who sends is not known";
+  EXPECT_GT(delays(own, connected("/x")).spread, 0.6);
 }
 
 TEST(Relations, WhatEverybodyHearsIsNoReason) {
   const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond});
-  const SourceGraph few = connected("/x", 3);
-  EXPECT_TRUE(delays(counts, few).reaches);
+  EXPECT_TRUE(delays(counts, connected("/x", 3)).reaches);
   SourceGraph many = connected("/x", 6);
   EXPECT_FALSE(delays(counts, many).reaches);
   for (int k = 0; k < 10; ++k) {  // now it is a small part of all
@@ -249,39 +215,20 @@ TEST(Relations, WhatEverybodyHearsIsNoReason) {
   EXPECT_TRUE(delays(counts, many).reaches);
   for (const std::string topic : {"/tf", "/tf_static", "/clock"}) {
     const Statistics common = followed(1, {{"/a", topic, "T"}, kTypes[kB]});
-    const SourceGraph graph = connected(topic);
-    EXPECT_FALSE(delays(common, graph).reaches) << topic;
+    EXPECT_FALSE(delays(common, connected(topic)).reaches) << topic;
   }
 }
 
 TEST(Relations, AnIrregularTriggerIsAReason) {
-  const Statistics one = followed(1);
-  const Relation relation = delays(one);
+  const Relation relation = delays(followed(1));
   EXPECT_TRUE(relation.irregular);
   EXPECT_FALSE(relation.watched) << "one start is not enough yet";
   EXPECT_EQ(relation.starts_needed, 2U);
-  const Statistics two = followed(2);
-  EXPECT_TRUE(delays(two).watched);
-  const SourceGraph graph = connected("/x");
-  EXPECT_TRUE(delays(one, graph).watched) << "both reasons at once are enough";
-  const Statistics unrelated = countsOf(
-      {together({irregular(kA, 0, kLength, kPeriod, 1), irregular(kB, 0, kLength, kPeriod, 2)})},
-      2);
-  EXPECT_FALSE(delays(unrelated).irregular);
-}
-
-TEST(Relations, MissesByChanceAreTheGapsThatFitIntoThoseOfTheOther) {
-  // At random, a gap of A of 1 s lies in a gap of B of 2 s half of the time.
-  const Statistics counts = countsOf(
-      {together({timer(kA, 0, 100 * kSecond, kSecond), timer(kB, 0, 100 * kSecond, 2 * kSecond)})},
-      2);
-  const double a = log_bins::middle(log_bins::bin(kSecond));
-  const double b = log_bins::middle(log_bins::bin(2 * kSecond));
-  const Relations relations(counts, kNoGraph, kTuning);
-  EXPECT_NEAR(relations.missRateByChance(kA, kB), (b - a) / (2.0 * kSecond), 1e-12);
-  EXPECT_NEAR(relations.missRateByChance(kA, kB), 0.5, 0.02);
-  EXPECT_EQ(relations.missRateByChance(kB, kA), 0) << "an A comes in every gap of B";
-  EXPECT_EQ(relations.missRateByChance(kA, kA), 0);
+  EXPECT_TRUE(delays(followed(2)).watched);
+  EXPECT_TRUE(delays(followed(1), connected("/x")).watched) << "both reasons are enough";
+  const Events unrelated =
+      together({irregular(kA, 0, kLength, kPeriod, 1), irregular(kB, 0, kLength, kPeriod, 2)});
+  EXPECT_FALSE(delays(countsOf({unrelated}, 2)).irregular);
 }
 
 // Requests at random, about every 4 s, each with its answer.
@@ -304,15 +251,11 @@ TEST(Relations, ADeadlineNeedsAnAnswerThatTakesItsTime) {
     first.push_back({event.stamp + (a_is_first ? 0 : 500) * kMillisecond, kA});
     second.push_back({event.stamp + (a_is_first ? 3 : 450) * kMillisecond, kB});
   }
-  const Statistics both = countsOf({together({first, second})}, 2);
-  EXPECT_FALSE(isOwed(both));
+  EXPECT_FALSE(isOwed(countsOf({together({first, second})}, 2)));
 }
 
 TEST(Relations, WhatComesAsOftenAsByChanceIsNotOwed) {
-  const Statistics counts = countsOf({together({irregular(kA, 0, 400 * kSecond, 4 * kSecond, 1),
-                                                irregular(kB, 0, 400 * kSecond, 4 * kSecond, 2)})},
-                                     2);
-  EXPECT_FALSE(isOwed(counts));
+  EXPECT_FALSE(isOwed(countsOf({atRandom(2, 0, 400 * kSecond, 4 * kSecond, 1)}, 2)));
   // A timer's own period says as much as what it answers to.
   const Statistics regular = timers({20 * kMillisecond, 20 * kMillisecond, 20 * kMillisecond});
   EXPECT_FALSE(isOwed(regular));
@@ -341,12 +284,8 @@ Statistics pausing() {
         timer(kA, burst * 44 * kSecond, (burst * 44 + 40) * kSecond, 100 * kMillisecond);
     asked.insert(asked.end(), more.begin(), more.end());
   }
-  Events answered;
-  for (std::size_t k = 0; k < asked.size(); ++k) {
-    if (k % 100 > 0) {
-      answered.push_back(asked[k]);
-    }
-  }
+  std::size_t number = 0;
+  const Events answered = without(asked, [&](const Event&) { return number++ % 100 == 0; });
   return countsOf({together({asked, answers(kB, answered, 20 * kMillisecond)})}, 2);
 }
 

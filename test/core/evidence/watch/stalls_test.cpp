@@ -148,13 +148,6 @@ class StarvationTest : public testing::Test {
   std::int64_t now_ = 100 * kSecond;
 };
 
-TEST_F(StarvationTest, WaitingAsUsualIsNone) {
-  EXPECT_EQ(starvation_.waitedIn(0, now_), 0);
-  EXPECT_FALSE(starvation_.holdsBack(now_));
-  go(kSecond, 0.5);
-  EXPECT_EQ(starvation_.waitedIn(0, now_), 0) << "within half of the time above what is usual";
-}
-
 TEST_F(StarvationTest, WhatWasWaitedIsForgivenToWhoWasSilentMeanwhile) {
   const std::int64_t begin = now_;
   go(300 * kMillisecond, 0.9);
@@ -178,15 +171,16 @@ TEST_F(StarvationTest, WhatWaitedHasComeAfterAsLongAsItLasted) {
   EXPECT_FALSE(starvation_.holdsBack(over + 300 * kMillisecond));
 }
 
-TEST_F(StarvationTest, ALoadThatStaysIsUsual) {
+TEST_F(StarvationTest, WaitingAsUsualIsNoneNorALoadThatStaysUnlessItBeginsSoon) {
+  EXPECT_EQ(starvation_.waitedIn(0, now_), 0);
+  EXPECT_FALSE(starvation_.holdsBack(now_));
+  go(kSecond, 0.5);
+  EXPECT_EQ(starvation_.waitedIn(0, now_), 0) << "within half of the time above what is usual";
   go(700 * kSecond, 0.95, kSecond);
   EXPECT_EQ(starvation_.waitedIn(0, now_), 0);
   starvation_.restart();
   go(70 * kSecond, 0.95, kSecond);
   EXPECT_EQ(starvation_.waitedIn(0, now_), 0) << "it was so from the start";
-}
-
-TEST_F(StarvationTest, ALoadThatBeginsSoonIsNotUsual) {
   starvation_.restart();
   go(kSecond, 0);
   go(20 * kSecond, 1);
