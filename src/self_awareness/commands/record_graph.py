@@ -9,7 +9,7 @@ import time
 from typing import Optional, Sequence, Set
 
 from self_awareness.commands import cli
-from self_awareness.training import live_graph
+from self_awareness.training import robot_graph
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 _PERIOD_S = 1.0
@@ -36,7 +36,7 @@ def _record(arguments: argparse.Namespace) -> None:
     unanswered = ''  # why the master was not heard the last time
     while True:
         try:
-            if graph.add(live_graph.fetch()):
+            if graph.add(robot_graph.fetch()):
                 complete.clear()
             unanswered = ''
         except ValueError as error:  # it may come back, and rosbag waits for it, too

@@ -20,7 +20,7 @@ from self_awareness.parts import BagPart, by_folder, look
 from self_awareness.reporting import model_text, verdict
 from self_awareness.reporting.model_summary import summarise
 from self_awareness.stamps import SECOND_NS
-from self_awareness.training import live_graph, many_bags
+from self_awareness.training import many_bags, robot_graph
 from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.training.robot_graph import RobotGraph
 from self_awareness.workers import Cluster, Workers, on_this_machine
@@ -118,7 +118,7 @@ def _silences(trained: Trained) -> List[Tuple[BagPart, Silences]]:
 def _live_graph(base: Optional[TrainedModel]) -> RobotGraph:
     """Return the running robot's graph, whose edges take the place of those that the base has."""
     try:
-        graph = live_graph.fetch()
+        graph = robot_graph.fetch()
     except ValueError as error:
         raise ValueError(f'--graph: {error}') from error
     if base is not None:
