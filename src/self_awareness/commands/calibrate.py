@@ -13,11 +13,10 @@ from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, 
                             accepted_file)
 from self_awareness.calibration import confidence, heads_and_tails, holes, limits
 from self_awareness.calibration.fault_injection import FORMS, InjectedFault, of_known_source
-from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
-                                                fault_results, labelled)
-from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, Injections,
-                                             JudgedRun, Run, check_unseen, injections, judge_runs,
-                                             recorded_fault)
+from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, FalseAlarms,
+                                             FaultResult, Injections, JudgedRun, Run,
+                                             check_unseen, false_alarms, fault_results,
+                                             injections, judge_runs, labelled, recorded_fault)
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
 from self_awareness.judging import Judge, evidence_judge, load_model, paper_judge
