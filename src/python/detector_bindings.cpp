@@ -141,8 +141,7 @@ void bindVerdicts(py::module& m) {
            py::arg("parameters"))
       .def("add", &core::Persistence::add, py::arg("abnormal"), py::arg("end"),
            py::arg("certain") = false,
-           "Takes in the next window; end: of the window [ns]. Returns whether the alarm stands.")
-      .def("clear", &core::Persistence::clear, "Forgets all windows and the alarm.");
+           "Takes in the next window; end: of the window [ns]. Returns whether the alarm stands.");
 
   py::class_<Verdicts>(m, "Verdicts", "One entry a window of a recording, and the alarms.")
       .def_property_readonly("start", arrayOf(&Verdicts::start), "of the window, int64 [ns]")

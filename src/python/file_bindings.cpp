@@ -31,7 +31,6 @@ void bindFiles(py::module& m) {
 
   using self_awareness::FileVersion;
   py::class_<FileVersion>(m, "FileVersion", "msg/FileVersion.msg")
-      .def_readonly("kind", &FileVersion::kind)
       .def_readonly("format", &FileVersion::format)
       .def_readonly("oldest_reader", &FileVersion::oldest_reader)
       .def_readonly("method", &FileVersion::method, "0: the file holds nothing that it made")

@@ -168,9 +168,7 @@ void bindLearner(py::module& m) {
            "choose what is watched; not needed for a model that is merged into another.")
       .def("learn", &Learner::learned,
            "Ends the learning: a TrainedModel, with limits if there was enough to find them in\n"
-           "the recordings of add().")
-      .def_property_readonly("why", &Learner::why,
-                             "why learn() found no limits; empty: it has found some");
+           "the recordings of add().");
 }
 
 void bindCalibrator(py::module& m) {

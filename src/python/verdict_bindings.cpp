@@ -264,7 +264,6 @@ void bindIncidents(py::module& m) {
       .def_readonly("main", &Incident::main,
                     "id of the longest one that blames the cause, alarms first")
       .def_readonly("ids", &Incident::ids, "of its alarms and suspicions, in the order of time")
-      .def_readonly("cause", &Incident::cause, "component; empty: nobody is to blame")
       .def_readonly("together", &Incident::together,
                     "failed at once with it, and do not need its messages")
       .def_readonly("victims", &Incident::victims,
@@ -303,7 +302,6 @@ void bindAccepted(py::module& m) {
                                return self.kind ? core::toString(*self.kind) : std::string();
                              })
       .def_readonly("at", &Acceptance::at, "when it was accepted [ns]")
-      .def_readonly("by", &Acceptance::by, "node that asked for it")
       .def_readonly("together", &Acceptance::together,
                     "of the kind new mode: components that are off together, in order")
       .def(
