@@ -6,7 +6,7 @@ import os
 import time
 from dataclasses import replace
 from statistics import median
-from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Sequence
 
 from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, EvidenceModel,
                             PaperCalibration, PaperModel, Roc, RocPoint, TrainedModel,
@@ -57,11 +57,6 @@ class _Measured(NamedTuple):
     false_alarms: FalseAlarms
     by_budget: Dict[float, List[Dict[str, Any]]]
     injected: Injections
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _calibrate, argv)
 
 
 def _calibrate(arguments: argparse.Namespace) -> None:
@@ -296,8 +291,7 @@ def _rows(runs: Sequence[JudgedRun]) -> Iterator[Sequence[object]]:
             yield part, judged.run.fault, start, events, unknown, repr(score), _LABELS[label]
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('calibrate', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     parser.add_argument('--normal', type=BagPart.parse, nargs='+', action='extend',
                         required=True, default=[], metavar='BAG',
@@ -329,4 +323,6 @@ def _parser() -> argparse.ArgumentParser:
                        help='draw the ROC; the name ends in .png, .pdf or .svg')
     group.add_argument('--csv', metavar='FILE', help='write score and label of every window')
     cli.add_settle_time(group)
-    return parser
+
+
+main = cli.Program('calibrate', __doc__, _EPILOG, _arguments, _calibrate)

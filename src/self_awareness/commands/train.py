@@ -43,11 +43,6 @@ examples:
 """
 
 
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _train, argv)
-
-
 def _train(arguments: argparse.Namespace) -> None:
     named = look(arguments.bags)
     cli.say_found(named, arguments.skip_bad)
@@ -175,8 +170,7 @@ def _check_distinct(parts: Sequence[BagPart]) -> None:
             others.append(part)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('train', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
                         help='a recording of normal operation, or a folder of them; delays never '
                              'cross from one to the next')
@@ -227,4 +221,6 @@ def _parser() -> argparse.ArgumentParser:
                             f'{Counting.window / SECOND_NS:g})')
     group.add_argument('--horizon', type=cli.seconds, metavar='S',
                        help='delays of this many s or more share one bin (default: no horizon)')
-    return parser
+
+
+main = cli.Program('train', __doc__, _EPILOG, _arguments, _train)
