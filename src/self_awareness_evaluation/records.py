@@ -99,11 +99,6 @@ class FaultRecord:
     involved: Optional[FrozenSet[str]] = None
 
     @property
-    def ends(self) -> int:
-        """When the fault ends, at the latest with the recording [ns]."""
-        return self.recording.end if self.back is None else self.back
-
-    @property
     def source(self) -> str:
         """The culprits in one text; empty if no single one is."""
         return '; '.join(self.culprits)
