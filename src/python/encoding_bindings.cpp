@@ -115,6 +115,10 @@ void bindEncoding(py::module& m) {
       .def_readonly("scope", &core::EventType::scope)
       .def_readonly("type", &core::EventType::type)
       .def_property_readonly(
+          "component",
+          [](const core::EventType& self) { return core::componentOf(self.source, self.scope); },
+          "who sends it: its source, or its scope where sources are not told apart")
+      .def_property_readonly(
           "tells_mode", [](const core::EventType& self) { return core::tellsMode(self); },
           "whether it tells the mode of the robot, and is no message of its own")
       .def_property_readonly(
