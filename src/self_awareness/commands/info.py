@@ -14,7 +14,7 @@ from self_awareness.reporting import (age_text, model_text, rates_text, recordin
                                       verdict)
 from self_awareness.reporting.file_summary import (describe_version, summarise_event_log,
                                                    summarise_results)
-from self_awareness.reporting.model_summary import summarise, tuning_lines
+from self_awareness.reporting.model_text import summarise, tuning_lines
 from self_awareness.reporting.text import duration, number_of, or_dash
 from self_awareness.stamps import moment, span
 

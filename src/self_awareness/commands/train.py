@@ -18,7 +18,6 @@ from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.parts import BagPart, by_folder, look
 from self_awareness.reporting import model_text, verdict
-from self_awareness.reporting.model_summary import summarise
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import many_bags, robot_graph
 from self_awareness.training.many_bags import Counting, Trained
@@ -86,7 +85,7 @@ def _train(arguments: argparse.Namespace) -> None:
                      *verdict.lines(model)])
     if arguments.details:
         cli.print_lines([
-            *model_text.lines(summarise(model)),
+            *model_text.lines(model_text.summarise(model)),
             *heads_and_tails.lines(_silences(trained), '--start', '--end')])
     left_out = arguments.leave_out_holes
     for line in holes.lines(found, [] if left_out else model.coverage(),
