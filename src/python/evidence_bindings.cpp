@@ -1,3 +1,4 @@
+#include <pybind11/operators.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -15,6 +17,8 @@
 #include "core/evidence/channel/scorer.h"
 #include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/channel/track.h"
+#include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/evidence/watch/relation.h"
 #include "self_awareness/ros/model/model_file.h"
 
@@ -22,6 +26,29 @@ namespace self_awareness::python {
 namespace {
 
 namespace evidence = core::evidence;
+
+using evidence::Tuning;
+using evidence::TuningNumber;
+using TuningState = std::pair<std::vector<double>, std::set<std::string>>;
+
+TuningState stateOfTuning(const Tuning& tuning) {
+  TuningState state;
+  for (const TuningNumber& number : evidence::tuningNumbers()) {
+    state.first.push_back(tuning.*number.value);
+  }
+  state.second = tuning.without;
+  return state;
+}
+
+Tuning tuningFrom(const TuningState& state) {
+  Tuning tuning;
+  const std::vector<TuningNumber>& numbers = evidence::tuningNumbers();
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    tuning.*numbers[k].value = state.first.at(k);
+  }
+  tuning.without = state.second;
+  return tuning;
+}
 
 /// The evidence of every track at the end of every window.
 class EvidenceRows : public core::WindowObserver {
@@ -107,6 +134,55 @@ std::vector<std::pair<std::int64_t, std::uint32_t>> delaysOf(const evidence::Mod
 }
 
 }  // namespace
+
+void bindTuning(py::module& m) {
+  py::class_<TuningNumber>(m, "TuningNumber", "What is known of a number of the method.")
+      .def_readonly("name", &TuningNumber::name)
+      .def_property_readonly("default",
+                             [](const TuningNumber& self) { return Tuning{}.*self.value; })
+      .def_readonly("least", &TuningNumber::least, "smallest value that makes sense")
+      .def_readonly("most", &TuningNumber::most, "largest one")
+      .def_readonly("unit", &TuningNumber::unit, "empty: a pure number")
+      .def_readonly("meaning", &TuningNumber::meaning, "a sentence")
+      .def_readonly("off", &TuningNumber::off,
+                    "with which its rule is switched off; None: it cannot be");
+
+  py::class_<Tuning>(m, "Tuning", "Every number of the evidence detector's method.")
+      .def(py::init<>(), "The defaults.")
+      .def_static("numbers", [] { return evidence::tuningNumbers(); })
+      .def_static(
+          "channels", [] { return evidence::channelNames(); },
+          "names of the channels that can be switched off")
+      .def(
+          "get",
+          [](const Tuning& self, const std::string& name) {
+            return self.*evidence::tuningNumber(name).value;
+          },
+          py::arg("name"), "ValueError if there is no number of this name.")
+      .def(
+          "set",
+          [](Tuning& self, const std::string& name, double value) {
+            evidence::set(self, name, value);
+          },
+          py::arg("name"), py::arg("value"),
+          "ValueError if there is no number of this name, or the value is out of its range.")
+      .def_property_readonly("without",
+                             [](const Tuning& self) {
+                               return std::vector<std::string>(self.without.begin(),
+                                                               self.without.end());
+                             })
+      .def(
+          "leave_out",
+          [](Tuning& self, const std::string& channel) {
+            if (evidence::channelNamed(channel) == nullptr) {
+              throw std::invalid_argument("the method has no channel '" + channel + "'");
+            }
+            self.without.insert(channel);
+          },
+          py::arg("channel"), "Switches a channel off. ValueError if there is none of this name.")
+      .def(py::self == py::self)
+      .def(py::pickle(&stateOfTuning, &tuningFrom));
+}
 
 void bindEvidence(py::module& m) {
   using evidence::Track;

@@ -94,13 +94,6 @@ void bindModel(py::module& m) {
           "the largest evidence that is normal, by track; NaN: not judged")
       .def_readwrite("relations", &Calibration::relations,
                      "what speaks for watching each track; by track")
-      .def_property(
-          "firsts", [](const Calibration& self) { return self.limits.firsts; },
-          [](Calibration& self, std::vector<std::int64_t> firsts) {
-            self.limits.firsts = std::move(firsts);
-          },
-          "from the start to the first event of a type, the latest [ns], by id; -1: it did not\n"
-          "come in one recording; empty: not known")
       .def_readwrite("budget", &Calibration::budget, "false alarms an hour that the limits allow")
       .def_readwrite("false_alarms_per_hour", &Calibration::false_alarms_per_hour,
                      "to be expected")
@@ -206,8 +199,7 @@ void bindModel(py::module& m) {
           "recordings",
           [](const TrainedModel& self) { return self.recordings; },  // a copy: merge() moves them
           "trained on")
-      .def_property_readonly(
-          "stamp", [](const TrainedModel& self) { return self.stamp; }, "when it was trained [ns]")
+      .def_readonly("stamp", &TrainedModel::stamp, "when it was trained [ns]")
       .def_readonly("version", &TrainedModel::version,
                     "FileVersion of its file; of this version if it has none")
       .def_readonly("left_out", &TrainedModel::left_out,

@@ -27,6 +27,10 @@ ros1::TimeRange timeRange(std::optional<double> start, std::optional<double> end
   return range;
 }
 
+/// Begin and end of a stretch of time, and how long the machine kept its processes waiting for a
+/// processor in it [ns].
+using WaitingState = std::tuple<std::int64_t, std::int64_t, std::int64_t>;
+
 /// The events of a recording, in memory.
 struct RecordedEvents {
   ros1::BagSummary summary;
@@ -34,7 +38,7 @@ struct RecordedEvents {
   std::vector<std::int64_t> stamps;          // [ns]
   std::vector<std::uint32_t> ids;
   std::vector<std::uint32_t> attributes;  // core::packed(); 0: not known
-  std::vector<core::Waiting> waiting;
+  std::vector<WaitingState> waiting;
   std::vector<SenderState> senders;
 };
 
@@ -128,8 +132,9 @@ RecordedEvents readEvents(const Files& files, const ros1::EncodingRules& rules,
   if (recording) {
     const ros1::EventLogReader reader(openLog(paths.front()), *recording);
     events.summary = reader.summary();
-    reader.read(rules, ids, range, handler, progressTo(progress),
-                [&](const core::Waiting& waiting) { events.waiting.push_back(waiting); });
+    reader.read(rules, ids, range, handler, progressTo(progress), [&](const core::Waiting& each) {
+      events.waiting.emplace_back(each.from, each.to, each.waited);
+    });
     const ros1::Encoder encoder(rules, nullptr);
     ros1::forEachGraph(reader.summary().graph_changes,
                        [&](std::int64_t stamp, const ros1::Graph& graph) {
@@ -280,24 +285,6 @@ void bindBags(py::module& m) {
       "and a time [ns] up to that time: (stamp [ns], level as in rosgraph_msgs/Log, text).\n"
       "Raises BagError.");
 
-  py::class_<core::Waiting>(
-      m, "Waiting",
-      "How long a machine kept its processes waiting for a processor, in a stretch of time.")
-      .def(py::init([](std::int64_t begin, std::int64_t end, std::int64_t waited) {
-             return core::Waiting{begin, end, waited};
-           }),
-           py::arg("begin"), py::arg("end"), py::arg("waited"), "Each in ns.")
-      .def_readonly("begin", &core::Waiting::from, "of the stretch [ns]")
-      .def_readonly("end", &core::Waiting::to, "[ns]")
-      .def_readonly("waited", &core::Waiting::waited, "[ns]")
-      .def(py::pickle(
-          [](const core::Waiting& self) {
-            return std::make_tuple(self.from, self.to, self.waited);
-          },
-          [](const std::tuple<std::int64_t, std::int64_t, std::int64_t>& state) {
-            return core::Waiting{std::get<0>(state), std::get<1>(state), std::get<2>(state)};
-          }));
-
   py::class_<RecordedEvents>(m, "RecordedEvents", "The events of a recording, in memory.")
       .def_readonly("summary", &RecordedEvents::summary)
       .def_readonly("event_types", &RecordedEvents::event_types, "by id")
@@ -305,8 +292,10 @@ void bindBags(py::module& m) {
       .def_property_readonly("ids", viewOf(&RecordedEvents::ids), "uint32, read-only")
       .def_property_readonly("attributes", viewOf(&RecordedEvents::attributes),
                              "of the messages, uint32, read-only: pack_attributes(); 0: not known")
-      .def_readonly("waiting", &RecordedEvents::waiting,
-                    "how the machine was: a Waiting for each stretch of time; empty: not known")
+      .def_readonly(
+          "waiting", &RecordedEvents::waiting,
+          "how the machine was: of each stretch of time (begin, end, how long processes\n"
+          "waited for a processor in it) [ns]; empty: not known")
       .def_readonly(
           "senders", &RecordedEvents::senders,
           "who sends, from a time [ns] on each: what comes from two senders of one name,\n"
@@ -353,6 +342,7 @@ void take(const py::object& recording, const char* name, T& value) {
 
 RecordingEvents::RecordingEvents(const py::object& from) {
   std::vector<std::int64_t> clock_steps;
+  std::vector<WaitingState> waiting;
   take(from, "event_types", event_types);
   take(from, "stamps", stamps);
   take(from, "ids", ids);
@@ -363,12 +353,15 @@ RecordingEvents::RecordingEvents(const py::object& from) {
   take(from, "robot_start", recording.robot_start);
   take(from, "clock_steps", clock_steps);
   take(from, "attributes", attributes);
-  take(from, "waiting", recording.waiting);
+  take(from, "waiting", waiting);
   take(from, "senders", senders);
   take(from, "missing", missing);
   take(from, "hosts", hosts);
   take(from, "before", before);
   recording.clock_steps = core::ClockSteps(std::move(clock_steps));
+  for (const auto& [begin, end_of_it, waited] : waiting) {
+    recording.waiting.push_back({begin, end_of_it, waited});
+  }
 }
 
 void bindRecordings(py::module& m) {

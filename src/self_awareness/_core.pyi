@@ -26,7 +26,6 @@ class Acceptance:
     def __init__(self, component: str = ..., topic: str = ..., kind: str = ..., at: int = ...,
                  by: str = ..., together: Sequence[str] = ...) -> None: ...
     at: Final[int]
-    by: Final[str]
     component: Final[str]
     kind: Final[str]
     together: Final[list[str]]
@@ -77,7 +76,6 @@ class BagSummary:
 class Calibration:
     budget: float
     false_alarms_per_hour: float
-    firsts: list[int]
     limits: list[float]
     method: str
     recordings: list[Recording]
@@ -154,6 +152,7 @@ class EventType:
     def __init__(self, source: str, scope: str, type: str) -> None: ...
     def __eq__(self, other: object, /) -> bool: ...
     def __hash__(self) -> int: ...
+    component: Final[str]
     scope: Final[str]
     source: Final[str]
     tells_mode: Final[bool]
@@ -193,13 +192,11 @@ class FileVersion:
     @staticmethod
     def why_graph_too_new(format: int, oldest_reader: int, package: str) -> str: ...
     format: Final[int]
-    kind: Final[str]
     method: Final[int]
     oldest_reader: Final[int]
     package: Final[str]
 
 class Incident:
-    cause: Final[str]
     ids: Final[list[int]]
     main: Final[int]
     others: Final[list[str]]
@@ -234,7 +231,6 @@ class Learner:
     def count(self, recording: RecordingEvents) -> None: ...
     def learn(self) -> TrainedModel: ...
     def model(self, watch: bool = ...) -> TrainedModel: ...
-    why: Final[str]
 
 class LimitFindings:
     def __init__(self) -> None: ...
@@ -276,7 +272,6 @@ class PaperModel:
 class Persistence:
     def __init__(self, parameters: DetectorParameters) -> None: ...
     def add(self, abnormal: bool, end: int, certain: bool = ...) -> bool: ...
-    def clear(self) -> None: ...
 
 class Reason:
     after: Final[str]
@@ -298,7 +293,7 @@ class RecordedEvents:
     senders: Final[list[tuple[int, set[tuple[str, str]], set[EventType]]]]
     stamps: Final[np.ndarray]
     summary: Final[BagSummary]
-    waiting: Final[list[Waiting]]
+    waiting: Final[list[tuple[int, int, int]]]
 
 class Recording:
     bag: str
@@ -454,12 +449,6 @@ class Verdicts:
     suspicion: Final[np.ndarray]
     suspicions: Final[list[Alarm]]
     unknown: Final[np.ndarray]
-
-class Waiting:
-    def __init__(self, begin: int, end: int, waited: int) -> None: ...
-    begin: Final[int]
-    end: Final[int]
-    waited: Final[int]
 
 def bag_span(path: str) -> tuple[int, int] | None: ...
 def drift_of(components: int, normal: Sequence[tuple[int, int, int, Sequence[float]]]

@@ -29,9 +29,11 @@ def load(path: str) -> EncodingRules:
             rules.source = section.text('source', 'callerid|none')
         if 'rename' in section:
             rules.rename = _renames(section, data['rename'])
+            _validate(section, 'rename', rules)
         for key in _LISTS:
             if key in section:
-                setattr(rules, key, _patterns(section, key))
+                setattr(rules, key, list(section.texts(key, fewest=0)))
+                _validate(section, key, rules)
         if 'type_fields' in section:
             rules.type_fields, rules.classes = _fields(section.section('type_fields'),
                                                        data['type_fields'])
@@ -86,17 +88,7 @@ def _renames(section: Section, value: Any) -> List[Tuple[str, str]]:
             all(isinstance(text, str) for text in rule) for rule in value):
         section.fail('rename', 'expected a list of pairs, each of a regular expression and the '
                                f'name that takes its place, found {shown(value)}')
-    probe = EncodingRules()
-    probe.rename = [(pattern, name) for pattern, name in value]
-    _validate(section, 'rename', probe)
-    return probe.rename
-
-
-def _patterns(section: Section, key: str) -> List[str]:
-    probe = EncodingRules()
-    probe.include_topics = list(section.texts(key, fewest=0))
-    _validate(section, key, probe)
-    return probe.include_topics
+    return [(pattern, name) for pattern, name in value]
 
 
 def _validate(section: Section, key: str, rules: EncodingRules) -> None:

@@ -10,8 +10,8 @@ import numpy as np
 
 from self_awareness import (LATEST_EVENT, LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules,
                             EventType, ModelFileError, RecordedEvents, Recording, TrainedModel,
-                            Waiting, find_clock_steps, missing_subscriptions, progress,
-                            read_events, summarise_bag)
+                            find_clock_steps, missing_subscriptions, progress, read_events,
+                            summarise_bag)
 from self_awareness.output_files import MODEL, RESULT_BAG
 from self_awareness.parts import BagPart
 from self_awareness.stamps import SECOND_NS
@@ -53,7 +53,8 @@ class RecordingEvents:
             say it.
         attributes: of the messages, uint32, one for each stamp (docs/method.md, section 3.10);
             None: not known.
-        waiting: how the machine was, one stretch of time after the other; empty: not known.
+        waiting: how the machine was, one stretch of time after the other: its begin and end, and
+            how long processes waited for a processor in it [ns]; empty: not known.
         senders: what comes from two senders of one name, and what is played, from a time [ns] on.
         missing: which of the subscriptions that the model expects, from a time [ns] on each, as
             an event log says.
@@ -79,7 +80,7 @@ class RecordingEvents:
     robot_start: int = 0
     clock_steps: Sequence[int] = ()
     attributes: Optional[np.ndarray] = None
-    waiting: Sequence[Waiting] = ()
+    waiting: Sequence[Tuple[int, int, int]] = ()
     senders: Sequence[Tuple[int, Set[Tuple[str, str]], Set[EventType]]] = ()
     missing: Sequence[Tuple[int, Set[Tuple[str, str]]]] = ()
     hosts: Mapping[str, str] = field(default_factory=dict)

@@ -8,18 +8,21 @@ import asyncio
 import concurrent.futures
 import logging
 import math
+import multiprocessing
+import os
 import pickle
+import signal
+import threading
 import traceback
 import warnings
 from abc import ABC, abstractmethod
 from collections import deque
 from contextlib import contextmanager, suppress
 from multiprocessing import connection
-from typing import (Any, Callable, Deque, Dict, Generator, Iterator, Optional, Sequence, Tuple,
-                    TypeVar)
+from typing import (Any, Callable, Deque, Dict, Generator, Iterator, List, Optional, Sequence,
+                    Tuple, TypeVar)
 
 from self_awareness import progress
-from self_awareness.forked import Forked, ctrl_c_waits
 
 _Shared = TypeVar('_Shared')
 _Task = TypeVar('_Task')
@@ -98,13 +101,13 @@ class Processes(Workers):
         Each task has a process of its own. If that is killed, another one does its work.
         """
         number = min(self._number, len(tasks))
-        running: Dict[Any, Tuple[Forked, int, int]] = {}  # by pipe; task and attempt
+        running: Dict[Any, Tuple[_Forked, int, int]] = {}  # by pipe; task and attempt
         outcomes: Dict[int, Optional[bytes]] = {}  # that wait for their turn
         begun = 0
 
         def begin(index: int, attempt: int) -> None:
-            with ctrl_c_waits():
-                process = Forked(lambda: _outcome(function, shared, tasks[index]))
+            with _ctrl_c_waits():
+                process = _Forked(lambda: _outcome(function, shared, tasks[index]))
                 running[process.pipe] = process, index, attempt
 
         try:
@@ -134,6 +137,79 @@ class Processes(Workers):
     def batches(self, tasks: int) -> int:
         """See Workers."""
         return _batches(tasks, self._number)
+
+
+class _Forked:
+    """A process that begins as a copy of this one, and the pipe that its result comes by.
+
+    It shares no lock and no queue with others: who is killed leaves nothing behind that somebody
+    waits for.
+
+    Args:
+        work: returns the result; it may not raise.
+
+    Raises:
+        OSError: it cannot be started.
+    """
+
+    def __init__(self, work: Callable[[], bytes]) -> None:
+        self.pipe, theirs = multiprocessing.Pipe(duplex=False)
+        # Not spawned: that would run the program's script again. As a daemon, it ends with this
+        # program even if nobody comes to call kill().
+        self._process = multiprocessing.get_context('fork').Process(
+            target=_work_alone, args=(theirs, work), daemon=True)
+        self._process.start()
+        theirs.close()  # or the end of the process would not end the pipe
+
+    def answer(self) -> Optional[bytes]:
+        """Return its result, once the pipe is ready; None: it was killed."""
+        try:
+            return self.pipe.recv_bytes()
+        except (EOFError, OSError):  # perhaps in the middle of its answer
+            return None
+        finally:
+            self.pipe.close()
+            self._process.join()
+
+    def kill(self) -> None:
+        """End it, whatever it does."""
+        self._process.kill()
+        self._process.join()
+
+
+@contextmanager
+def _ctrl_c_waits() -> Iterator[None]:
+    """Let Ctrl-C wait until the end of the block.
+
+    In the middle of a fork, Python would print its KeyboardInterrupt, and drop it. To block the
+    signal in this thread is not enough: any other one may take it.
+    """
+    if threading.current_thread() is not threading.main_thread():  # Ctrl-C does not come here
+        yield
+        return
+    came: List[int] = []
+    usual = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, usual)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
+def _work_alone(pipe: connection.Connection, work: Callable[[], bytes]) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C: the parent ends this process
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    progress.silence()
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    pipe.send_bytes(work())
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
 
 
 def on_this_machine(jobs: int) -> Workers:

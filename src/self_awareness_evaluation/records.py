@@ -13,7 +13,7 @@ from typing import (Callable, Dict, FrozenSet, Hashable, Iterable, List, Optiona
 
 import numpy as np
 
-from self_awareness import DEFAULT_WINDOW, DetectorParameters, EventType, Persistence, Roc, Waiting
+from self_awareness import DEFAULT_WINDOW, DetectorParameters, EventType, Persistence, Roc
 from self_awareness.recordings import RecordingEvents
 
 _Key = TypeVar('_Key', bound=Hashable)
@@ -42,8 +42,8 @@ class WindowedEvents:
     attributes: Optional[np.ndarray] = None  # of messages, uint32, as many; None: not known
     # What there was from a time [ns] on, in the order of time; empty: not known.
     subscriptions: Sequence[Tuple[int, Subscriptions]] = ()
-    # How the recorder's machine was, one stretch of time after the other; empty: not known.
-    waiting: Sequence[Waiting] = ()
+    # How the recorder's machine was, as in RecordingEvents; empty: not known.
+    waiting: Sequence[Tuple[int, int, int]] = ()
 
     def encoded(self, vocabulary: Sequence[EventType]) -> WindowedEvents:
         """Return the same recording with the types of a vocabulary first, as the bag reader does;
@@ -97,11 +97,6 @@ class FaultRecord:
     back: Optional[int] = None  # when it is over [ns]; None: it lasts to the end of the recording
     # The culprits, and who may suffer from them; None: nobody is guilty, or it is not known.
     involved: Optional[FrozenSet[str]] = None
-
-    @property
-    def ends(self) -> int:
-        """When the fault ends, at the latest with the recording [ns]."""
-        return self.recording.end if self.back is None else self.back
 
     @property
     def source(self) -> str:

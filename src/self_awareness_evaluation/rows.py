@@ -109,10 +109,10 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged,
                  [alarm for alarm in judged.alarms if alarm.start <= onset])
     row = replace(row, noticed_s=_noticed_s(judged, onset),
                   stood_before=any(each.stands_at(onset) for each in judged.alarms))
-    alarms = judged.alarms
+    alarms, ends = judged.alarms, record.recording.end
     if record.back is not None:
-        end = record.back + nanoseconds(AFTERMATH_S)
-        alarms = [each for each in alarms if each.start <= end]
+        ends = record.back
+        alarms = [each for each in alarms if each.start <= ends + nanoseconds(AFTERMATH_S)]
         row = replace(row, after=len(judged.alarms) - len(alarms))
     alarm = first_alarm(alarms, onset)
     if alarm is not None:
@@ -123,7 +123,7 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged,
             row = replace(row, first=any(guilty[:1]), among_three=any(guilty[:3]))
         if named is not None and record.involved is not None:
             row = replace(row, bystanders=len(set(named) - record.involved))
-    return at_end(row, [*judged.alarms, *judged.suspicions], onset, record.ends)
+    return at_end(row, [*judged.alarms, *judged.suspicions], onset, ends)
 
 
 def first_alarm(alarms: Sequence[SystemAlarm], onset: int) -> Optional[SystemAlarm]:

@@ -53,11 +53,6 @@ class MessageType:
         return self._stamped(self._message) is not None
 
     @property
-    def has_header(self) -> bool:
-        """Whether messages begin with a header."""
-        return bool(self.message_class._has_header)
-
-    @property
     def has_list(self) -> bool:
         """Whether messages have a list that is empty if they are."""
         return self._list_field is not None

@@ -27,11 +27,6 @@ _TIMES, _LEAST_S = 3.0, 1.0
 _MOST_NAMED, _MOST_LINES = 3, 10
 
 
-def component_of(event_type: EventType) -> str:
-    """Return who sends it."""
-    return event_type.source or event_type.scope
-
-
 def is_longer(silence_s: float, others_s: float) -> bool:
     """Return whether a silence is so much longer than others that it is of another kind."""
     return silence_s > max(_TIMES * others_s, others_s + _LEAST_S)
@@ -97,8 +92,8 @@ def _of_components(found: Silences) -> Dict[str, Silence]:
     """Return the shortest of each component: who sends anything is no longer silent."""
     shortest: Dict[str, Silence] = {}
     for kind, each in found.items():
-        other = shortest.get(component_of(kind), each)
-        shortest[component_of(kind)] = Silence(
+        other = shortest.get(kind.component, each)
+        shortest[kind.component] = Silence(
             each.begin_s, min(each.length_s, other.length_s), min(each.head_s, other.head_s),
             min(each.tail_s, other.tail_s))
     return shortest

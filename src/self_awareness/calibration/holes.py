@@ -12,7 +12,7 @@ from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
 
 from self_awareness import Coverage, EventType, TrainedModel
 from self_awareness.calibration import heads_and_tails
-from self_awareness.calibration.heads_and_tails import Silence, Silences, component_of
+from self_awareness.calibration.heads_and_tails import Silence, Silences
 from self_awareness.parts import BagPart
 from self_awareness.reporting.text import duration
 from self_awareness.stamps import SECOND_NS
@@ -33,7 +33,7 @@ class Hole:
     @property
     def component(self) -> str:
         """The component that was silent."""
-        return component_of(self.kind)
+        return self.kind.component
 
 
 def known_silences(trained: TrainedModel) -> Dict[EventType, float]:

@@ -1,4 +1,4 @@
-"""Recordings as a calibration judges them: as they were, or with a fault.
+"""Recordings as a calibration judges them: as they were, or with a fault; and what that shows.
 
 The windows of normal recordings are normal; those of a faulty one are abnormal while the fault
 lasts. Those before and after count as neither: nobody knows whether they are normal. Windows while
@@ -12,8 +12,9 @@ from typing import Dict, List, NamedTuple, Optional, Sequence
 
 import numpy as np
 
-from self_awareness import TrainedModel, Verdicts, progress
-from self_awareness.calibration import fault_injection, heads_and_tails
+from self_awareness import Roc, TrainedModel, Verdicts, progress
+from self_awareness.calibration import confidence, fault_injection, heads_and_tails
+from self_awareness.calibration.confidence import Interval
 from self_awareness.calibration.fault_injection import InjectedFault, of_each_source
 from self_awareness.judging import Judge
 from self_awareness.recordings import DistinctRecordings, RecordingEvents, overlap
@@ -23,6 +24,7 @@ NORMAL, ABNORMAL, LEFT_OUT = 0, 1, -1  # labels of windows
 RECORDED = 'recorded'  # what a fault is called that was recorded, not injected
 
 _BEFORE, _AFTER = 3 * SECOND_NS, 5 * SECOND_NS  # of an alarm: what led to it, and what is left
+_HOUR = 3600 * SECOND_NS
 _SHORTEST = 30 * SECOND_NS  # recording that a fault is injected into, if an excuse shortens it
 
 
@@ -218,3 +220,72 @@ def _labels(run: Run, verdicts: Verdicts, window: int) -> np.ndarray:
             labels[verdicts.start + window > run.source.end - nanoseconds(before_s)] = LEFT_OUT
     labels[verdicts.settling] = LEFT_OUT
     return labels
+
+
+@dataclass(frozen=True)
+class FaultResult:
+    """How well one fault, or all of them, is told from normal operation."""
+
+    fault: str
+    windows: int
+    roc: Roc
+    true_positive_rate: float
+    recordings: int
+    latencies: List[float]  # [s], of the recordings in which the alarm was raised
+    stood_before: int  # recordings in which it stood already
+
+
+@dataclass(frozen=True)
+class FalseAlarms:
+    """Alarms after persistence on the normal recordings."""
+
+    count: int  # of them
+    hours: float  # of normal operation
+    # Further ones, of who stopped before the recording ended: that is no false alarm.
+    at_end: int = 0
+
+    @property
+    def per_hour(self) -> float:
+        """Alarms an hour."""
+        return self.count / self.hours
+
+    @property
+    def interval(self) -> Interval:
+        """Its 95 % confidence interval."""
+        return confidence.poisson_rate(self.count, self.hours)
+
+
+def labelled(runs: Sequence[JudgedRun], label: int) -> np.ndarray:
+    """Return the scores of all windows with a label."""
+    return np.concatenate([run.scores[run.labels == label] for run in runs] or [np.empty(0)])
+
+
+def fault_results(normal: np.ndarray, faulty: Sequence[JudgedRun],
+                  threshold: float) -> List[FaultResult]:
+    """Return the result of every fault, and of all together at the end if they are several."""
+    groups: Dict[str, List[JudgedRun]] = {}
+    for judged in faulty:
+        run = judged.run
+        groups.setdefault(str(run.source.part) if run.fault == RECORDED else run.fault,
+                          []).append(judged)
+    results = [_fault_result(name, normal, runs, threshold) for name, runs in groups.items()]
+    if len(groups) > 1:
+        results.append(_fault_result('all together', normal, faulty, threshold))
+    return results
+
+
+def false_alarms(normal: Sequence[JudgedRun], window: int) -> FalseAlarms:
+    """Count the alarms on the normal recordings; `window` [ns]."""
+    windows = sum(int((run.labels == NORMAL).sum()) for run in normal)
+    alarms = [heads_and_tails.stopped_before_end(run.run.source, alarm) is None
+              for run in normal for alarm in run.verdicts.alarms]
+    return FalseAlarms(sum(alarms), windows * window / _HOUR, len(alarms) - sum(alarms))
+
+
+def _fault_result(name: str, normal: np.ndarray, runs: Sequence[JudgedRun],
+                  threshold: float) -> FaultResult:
+    abnormal = labelled(runs, ABNORMAL)
+    roc = Roc(normal, abnormal)
+    return FaultResult(name, len(abnormal), roc, roc.at(threshold).true_positive_rate, len(runs),
+                       [run.latency for run in runs if run.latency is not None],
+                       sum(run.stood_before for run in runs))

@@ -6,18 +6,17 @@ import os
 import time
 from dataclasses import replace
 from statistics import median
-from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Sequence
 
 from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, EvidenceModel,
                             PaperCalibration, PaperModel, Roc, RocPoint, TrainedModel,
                             accepted_file)
 from self_awareness.calibration import confidence, heads_and_tails, holes, limits
 from self_awareness.calibration.fault_injection import FORMS, InjectedFault, of_known_source
-from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
-                                                fault_results, labelled)
-from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, Injections,
-                                             JudgedRun, Run, check_unseen, injections, judge_runs,
-                                             recorded_fault)
+from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, FalseAlarms,
+                                             FaultResult, Injections, JudgedRun, Run,
+                                             check_unseen, false_alarms, fault_results,
+                                             injections, judge_runs, labelled, recorded_fault)
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
 from self_awareness.judging import Judge, evidence_judge, load_model, paper_judge
@@ -58,11 +57,6 @@ class _Measured(NamedTuple):
     false_alarms: FalseAlarms
     by_budget: Dict[float, List[Dict[str, Any]]]
     injected: Injections
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _calibrate, argv)
 
 
 def _calibrate(arguments: argparse.Namespace) -> None:
@@ -297,8 +291,7 @@ def _rows(runs: Sequence[JudgedRun]) -> Iterator[Sequence[object]]:
             yield part, judged.run.fault, start, events, unknown, repr(score), _LABELS[label]
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('calibrate', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     parser.add_argument('--normal', type=BagPart.parse, nargs='+', action='extend',
                         required=True, default=[], metavar='BAG',
@@ -330,4 +323,6 @@ def _parser() -> argparse.ArgumentParser:
                        help='draw the ROC; the name ends in .png, .pdf or .svg')
     group.add_argument('--csv', metavar='FILE', help='write score and label of every window')
     cli.add_settle_time(group)
-    return parser
+
+
+main = cli.Program('calibrate', __doc__, _EPILOG, _arguments, _calibrate)

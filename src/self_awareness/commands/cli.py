@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import sys
+from dataclasses import dataclass
 from types import FrameType
 from typing import Any, Callable, Iterable, List, NoReturn, Optional, Sequence, TypeVar
 
@@ -38,22 +39,26 @@ class _Parser(argparse.ArgumentParser):
         self.exit(2, f'{self.prog}: error: {message} ({self.prog} --help says more)\n')
 
 
-def parser(program: str, about: Optional[str], epilog: str = '') -> argparse.ArgumentParser:
-    """Return a parser without arguments yet.
+@dataclass(frozen=True)
+class Program:
+    """A program: it runs when it is called, with its arguments or those of the command line."""
 
-    Args:
-        program: its name.
-        about: the docstring of its module: how it is started, a colon, and what it does.
-        epilog: whose lines stay as they are.
-    """
-    return _Parser(
-        prog=program, description=(about or '').split(': ', 1)[1].strip(), epilog=epilog,
-        formatter_class=argparse.RawDescriptionHelpFormatter)
+    name: str
+    about: Optional[str]  # docstring of its module: how it is started, a colon, and what it does
+    epilog: str  # of its help, whose lines stay as they are
+    add_arguments: Callable[[argparse.ArgumentParser], None]
+    work: Work
+    is_node: bool = False  # under roslaunch, its name and remappings come with the arguments
 
-
-def of_node(argv: Optional[Sequence[str]]) -> List[str]:
-    """Return the arguments of a node: under roslaunch, its name and remappings come with them."""
-    return list(rosgraph.myargv(sys.argv if argv is None else ['', *argv])[1:])
+    def __call__(self, argv: Optional[Sequence[str]] = None) -> int:
+        """Run it; return its exit code (see run)."""
+        parser = _Parser(
+            prog=self.name, description=(self.about or '').split(': ', 1)[1].strip(),
+            epilog=self.epilog, formatter_class=argparse.RawDescriptionHelpFormatter)
+        self.add_arguments(parser)
+        if self.is_node:
+            argv = rosgraph.myargv(sys.argv if argv is None else ['', *argv])[1:]
+        return run(parser, self.work, argv)
 
 
 def run(parser: argparse.ArgumentParser, work: Work, argv: Optional[Sequence[str]]) -> int:

@@ -2,17 +2,11 @@
 from __future__ import annotations
 
 import argparse
-from typing import Optional, Sequence
 
 from self_awareness.commands import cli, ros_node
 from self_awareness_follow_me.node import ComponentNode
 from self_awareness_follow_me.scenario import load_scenario
 from self_awareness_follow_me.speed import sped_up
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run a component under its own name; return the exit code (see cli.run)."""
-    return cli.run(_parser(), _run, cli.of_node(argv))
 
 
 def _run(arguments: argparse.Namespace) -> None:
@@ -23,11 +17,12 @@ def _run(arguments: argparse.Namespace) -> None:
     ComponentNode(scenario, spec, arguments.seed).spin()
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('component', __doc__)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('name', help='name of the component, or of the intruder, in the scenario')
     parser.add_argument('--scenario', help='scenario file (default: config/follow_me.yaml)')
     parser.add_argument('--seed', type=int, default=0, help='of the random numbers (default: 0)')
     parser.add_argument('--speed', type=cli.above_zero('a factor of the speed'), default=1.0,
                         help='how many times as fast everything goes (default: 1)')
-    return parser
+
+
+main = cli.Program('component', __doc__, '', _arguments, _run, is_node=True)

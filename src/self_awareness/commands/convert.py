@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from typing import Optional, Sequence
+from typing import Optional
 
 from self_awareness import (BagSummary, EncodingRules, EventLogWriter, encoding_file, progress,
                             summarise_bag)
@@ -21,11 +21,6 @@ the bag: it says who subscribes to what.
 example:
   convert /nfs/bags/*.bag -o robot.events.bag
 """
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _convert, argv)
 
 
 def _convert(arguments: argparse.Namespace) -> None:
@@ -67,12 +62,13 @@ def _add(log: EventLogWriter, part: BagPart, summary: BagSummary,
     print(f'{part}: {summary.messages} messages')
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('convert', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bags', nargs='+', metavar='BAG',
                         help='a recording, or a folder of bags')
     parser.add_argument('-o', '--output', required=True, metavar='LOG', help='file to write')
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
     cli.add_skip_bad(parser)
-    return parser
+
+
+main = cli.Program('convert', __doc__, _EPILOG, _arguments, _convert)

@@ -4,7 +4,7 @@ from __future__ import annotations
 import argparse
 import threading
 import time
-from typing import Callable, Dict, Optional, Sequence
+from typing import Callable, Dict
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
@@ -51,12 +51,8 @@ class _Operator:
             return self._changed.wait_for(condition, seconds)
 
 
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Kill `player` in the running robot; return 0 if the alarm came after that, and only then."""
-    return cli.run(cli.parser('demo_fault', __doc__), _demonstrate, argv)
-
-
 def _demonstrate(_arguments: argparse.Namespace) -> None:
+    """Kill `player` in the running robot; raise ValueError unless the alarm came after that."""
     component = load_scenario().faults.cc1
     rospy.init_node('demo', anonymous=True, disable_signals=True)
     operator = _Operator()
@@ -90,3 +86,6 @@ def _report(status: DiagnosticStatus, seconds: float) -> None:
     for key in sorted(key for key in values if key.startswith('suspect')):
         print(f'  {key}: {values[key]}')
     print()
+
+
+main = cli.Program('demo_fault', __doc__, '', lambda _: None, _demonstrate)

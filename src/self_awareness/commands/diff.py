@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import argparse
-from typing import Optional, Sequence
 
 from self_awareness.commands import cli
 from self_awareness.comparison.changes import compare
@@ -24,11 +23,6 @@ examples:
 """
 
 
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _diff, argv)
-
-
 def _diff(arguments: argparse.Namespace) -> None:
     check_outputs([(arguments.html, PAGE)],
                   [BagPart.parse(name).path for name in (arguments.before, arguments.after)])
@@ -42,12 +36,13 @@ def _diff(arguments: argparse.Namespace) -> None:
     cli.say_skipped('diff', bad)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('diff', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('before', metavar='A', help='how it was')
     parser.add_argument('after', metavar='B', help='how it is')
     parser.add_argument('--json', action='store_true', help='print JSON, for programs')
     parser.add_argument('--html', type=cli.page_file, metavar='FILE.html',
                         help='write a page for a browser, too')
     cli.add_skip_bad(parser)
-    return parser
+
+
+main = cli.Program('diff', __doc__, _EPILOG, _arguments, _diff)

@@ -4,7 +4,7 @@ from __future__ import annotations
 import argparse
 import glob
 import os
-from typing import List, Optional, Sequence
+from typing import List, Sequence
 
 from self_awareness import KeptIncident, read_incidents
 from self_awareness.commands import cli
@@ -16,11 +16,6 @@ _EPILOG = """\
 A monitor keeps its last 100 incidents in NAME.incidents beside the flight recorder's files, also
 while it does not run. Near misses are suspicions that became no alarm.
 """
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _incidents, argv)
 
 
 def _incidents(arguments: argparse.Namespace) -> None:
@@ -86,8 +81,7 @@ def _actions(incidents: str) -> Sequence[Action]:
         return ()
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('incidents', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('id', type=int, nargs='?', metavar='ID',
                         help='show all of this one, and how to make its report')
     parser.add_argument('--file', action='append', metavar='FILE',
@@ -97,4 +91,6 @@ def _parser() -> argparse.ArgumentParser:
                         help='list also components with near misses only')
     parser.add_argument('--json', action='store_true',
                         help='print all of them as JSON, with near misses')
-    return parser
+
+
+main = cli.Program('incidents', __doc__, _EPILOG, _arguments, _incidents)

@@ -5,9 +5,8 @@ import argparse
 import contextlib
 import signal
 import time
-from functools import partial
 from pathlib import Path
-from typing import Optional, Sequence
+from typing import Optional
 
 from self_awareness import progress
 from self_awareness.commands import cli
@@ -17,13 +16,7 @@ from self_awareness_follow_me.faults import described, effect_of, in_short
 from self_awareness_follow_me.scenario import load_scenario
 
 
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    parser = _parser()
-    return cli.run(parser, partial(_induce, parser), argv)
-
-
-def _induce(parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> None:
+def _induce(arguments: argparse.Namespace) -> None:
     # A termination must clean up like Ctrl-C.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     scenario = load_scenario(arguments.scenario)
@@ -33,7 +26,7 @@ def _induce(parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> N
             _last(f'fault {arguments.kind}', arguments.duration)
         return
     if arguments.duration is not None:
-        parser.error('--duration: not for this fault, which kills nodes: they stay dead')
+        arguments.refuse('--duration: not for this fault, which kills nodes: they stay dead')
     if isinstance(effect, Crash):
         pids = {effect.component: induction.crash(effect, arguments.namespace)}
     else:
@@ -54,8 +47,7 @@ def _last(what: str, duration_s: Optional[float]) -> None:
     progress.say(f'{time.time():.3f} {what} ends')
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('induce', __doc__, f'faults:\n{described()}')
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('kind', type=in_short, metavar='KIND', help='one of the faults below')
     parser.add_argument('--duration', type=cli.above_zero('a time in s'), metavar='S',
                         help='how long it lasts in s; not for faults that kill nodes (default: '
@@ -64,4 +56,7 @@ def _parser() -> argparse.ArgumentParser:
                         help='namespace of the robot (default: none)')
     parser.add_argument('--scenario', type=Path, metavar='FILE',
                         help='the robot (default: config/follow_me.yaml of the package)')
-    return parser
+    parser.set_defaults(refuse=parser.error)
+
+
+main = cli.Program('induce', __doc__, f'faults:\n{described()}', _arguments, _induce)

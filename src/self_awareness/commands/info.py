@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from typing import Any, Callable, Dict, Iterator, Optional, Sequence
+from typing import Any, Callable, Dict, Iterator
 
 from self_awareness import ModelFileError, ResultBag, TrainedModel, recordings_in_event_log
 from self_awareness.commands import cli
@@ -14,14 +14,9 @@ from self_awareness.reporting import (age_text, model_text, rates_text, recordin
                                       verdict)
 from self_awareness.reporting.file_summary import (describe_version, summarise_event_log,
                                                    summarise_results)
-from self_awareness.reporting.model_summary import summarise, tuning_lines
+from self_awareness.reporting.model_text import summarise, tuning_lines
 from self_awareness.reporting.text import duration, number_of, or_dash
 from self_awareness.stamps import moment, span
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _info, argv)
 
 
 def _info(arguments: argparse.Namespace) -> None:
@@ -139,8 +134,7 @@ def _lines_of_log(summary: Dict[str, Any], details: bool) -> Iterator[str]:
     yield f'graph        {model_text.graph(summary)}'
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('info', __doc__)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('model', metavar='MODEL',
                         help='file written by train or calibrate, an event log, a result bag of '
                              'score, or a folder of recordings')
@@ -160,4 +154,6 @@ def _parser() -> argparse.ArgumentParser:
                        help='say how far recordings of normal operation since have drifted from '
                             'what the model was learned from (default: those of MODEL.kept)')
     cli.add_skip_bad(parser)
-    return parser
+
+
+main = cli.Program('info', __doc__, '', _arguments, _info)

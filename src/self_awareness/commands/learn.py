@@ -33,7 +33,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         See cli.run; 3 if it could go on with what it has, once it is started again.
     """
     try:
-        return cli.run(_parser(), _learn, cli.of_node(argv))
+        return _PROGRAM(argv)
     except RecorderCrash as crash:
         print(f'learn: error: {crash}', file=sys.stderr)
         return ros_node.START_AGAIN
@@ -84,8 +84,7 @@ def _become_monitor() -> None:
     os.execv(monitor, [monitor, *remapped])
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('learn', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--hours', type=cli.above_zero('hours'), default=2.0, metavar='N',
                         help='of recordings to learn from, more than 0 (default: 2)')
     parser.add_argument('--logs', metavar='FOLDER',
@@ -102,4 +101,6 @@ def _parser() -> argparse.ArgumentParser:
                         help='used: only topics that a node of the robot (not a tool) subscribes '
                              'to; all: every topic, which may start publishers that work only for '
                              'subscribers (default: used)')
-    return parser
+
+
+_PROGRAM = cli.Program('learn', __doc__, _EPILOG, _arguments, _learn, is_node=True)

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import argparse
 import os
-from typing import Optional, Sequence
 
 from self_awareness.calibration.heads_and_tails import START_UP_S
 from self_awareness.commands import cli
@@ -24,11 +23,6 @@ examples:
   learn_more --model robot.model normal_*.bag -o new.model
   learn_more --model robot.model --take          the old one stays, as robot.model.before
 """
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _learn_more, argv)
 
 
 def _learn_more(arguments: argparse.Namespace) -> None:
@@ -68,8 +62,7 @@ def _take(new: str, model: str) -> None:
           '~reload')
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('learn_more', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('logs', nargs='*', metavar='LOG',
                         help='a recording of normal operation since, or a folder of them '
                              '(default: MODEL.kept)')
@@ -86,4 +79,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--take', action='store_true',
                         help='let the new model take the place of MODEL, which is kept; without '
                              'LOG, the one that is written already')
-    return parser
+
+
+main = cli.Program('learn_more', __doc__, _EPILOG, _arguments, _learn_more)

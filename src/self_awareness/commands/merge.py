@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import argparse
-from typing import Optional, Sequence
 
 from self_awareness import TrainedModel
 from self_awareness.commands import cli
@@ -20,11 +19,6 @@ horizon.
 example:
   merge robot1.model robot2.model robot3.model -o fleet.model
 """
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _merge, argv)
 
 
 def _merge(arguments: argparse.Namespace) -> None:
@@ -76,9 +70,10 @@ def _load(path: str, known: DistinctRecordings, renames: Renames) -> TrainedMode
     return model
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('merge', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('models', nargs='+', metavar='MODEL',
                         help='file written by train or merge, or by calibrate')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
-    return parser
+
+
+main = cli.Program('merge', __doc__, _EPILOG, _arguments, _merge)

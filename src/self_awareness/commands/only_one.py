@@ -15,7 +15,7 @@ from self_awareness.recovery.node_calls import NodeCalls
 from self_awareness.recovery.node_process import begun, has_another_name
 from self_awareness.recovery.xml_rpc import NoAnswer
 
-_PROGRAM = 'only_one'
+_NAME = 'only_one'
 _WITHIN_S = 3.0
 _POLL_S = 1.0
 _START_AGAIN = 3
@@ -35,9 +35,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         (launch/until_refused.sh).
     """
     try:
-        return cli.run(_parser(), _start, argv)
+        return _PROGRAM(argv)
     except NoAnswer as error:
-        print(f'{_PROGRAM}: error: {error}', file=sys.stderr)
+        print(f'{_NAME}: error: {error}', file=sys.stderr)
         return _START_AGAIN
 
 
@@ -78,7 +78,7 @@ def _await_master(calls: NodeCalls, name: str) -> None:
             return
         except NoAnswer as error:
             if not told:
-                cli.warn(_PROGRAM, f'{name} waits: {error}')
+                cli.warn(_NAME, f'{name} waits: {error}')
             told = True
         time.sleep(_POLL_S)
 
@@ -130,8 +130,7 @@ def _set(calls: NodeCalls, key: str, value: Any) -> None:
         calls.master('setParam', key, value)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser(_PROGRAM, __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--parameters', metavar='NAMESPACE',
                         help='move the parameters of this namespace to the private ones of the '
                              'node, if it is started')
@@ -139,4 +138,6 @@ def _parser() -> argparse.ArgumentParser:
                         help='the node: one of this package, or PACKAGE/PROGRAM')
     parser.add_argument('arguments', metavar='ARGUMENT', nargs=argparse.REMAINDER,
                         help='of the node, with its name (__name:=NAME)')
-    return parser
+
+
+_PROGRAM = cli.Program(_NAME, __doc__, _EPILOG, _arguments, _start)

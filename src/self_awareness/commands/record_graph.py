@@ -6,10 +6,10 @@ import argparse
 import glob
 import os
 import time
-from typing import Optional, Sequence, Set
+from typing import Set
 
 from self_awareness.commands import cli
-from self_awareness.training import live_graph
+from self_awareness.training import robot_graph
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 _PERIOD_S = 1.0
@@ -19,11 +19,6 @@ Run it while `rosbag record --output-prefix PREFIX` (or --output-name) runs; rec
 End it by Ctrl-C. A bag does not say who subscribes; train finds the file PREFIX...graph.yaml by
 itself if it lies beside the bag. Only the master is asked, once a second; no node notices.
 """
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _record, cli.of_node(argv))
 
 
 def _record(arguments: argparse.Namespace) -> None:
@@ -36,7 +31,7 @@ def _record(arguments: argparse.Namespace) -> None:
     unanswered = ''  # why the master was not heard the last time
     while True:
         try:
-            if graph.add(live_graph.fetch()):
+            if graph.add(robot_graph.fetch()):
                 complete.clear()
             unanswered = ''
         except ValueError as error:  # it may come back, and rosbag waits for it, too
@@ -51,8 +46,9 @@ def _record(arguments: argparse.Namespace) -> None:
         time.sleep(_PERIOD_S)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('record_graph', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('prefix', metavar='PREFIX',
                         help='beginning of the paths of the bags, as rosbag record was told')
-    return parser
+
+
+main = cli.Program('record_graph', __doc__, _EPILOG, _arguments, _record, is_node=True)

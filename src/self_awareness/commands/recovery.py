@@ -6,7 +6,7 @@ import os
 import sys
 import traceback
 from contextlib import contextmanager
-from typing import Iterator, Optional, Sequence
+from typing import Iterator
 
 import rospy
 
@@ -18,16 +18,6 @@ _EPILOG = """\
 Better: roslaunch self_awareness recovery.launch rules:=FILE. config/recovery.yaml explains the
 rules. Call ~hold (self_awareness/Maintenance) before you work on the robot.
 """
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program.
-
-    Returns:
-        see cli.run; 1: the rules cannot be used. 3 if it failed for another reason, so that it may
-        be started again (launch/until_refused.sh).
-    """
-    return cli.run(_parser(), _recover, cli.of_node(argv))
 
 
 def _recover(arguments: argparse.Namespace) -> None:
@@ -42,7 +32,10 @@ def _recover(arguments: argparse.Namespace) -> None:
 
 @contextmanager
 def _to_be_started_again() -> Iterator[None]:
-    """Let what fails here end the program, since it may go well the next time."""
+    """Let what fails here end the program with START_AGAIN: it may go well the next time.
+
+    So launch/until_refused.sh starts it again, unless the rules cannot be used.
+    """
     try:
         yield
     except Exception:
@@ -50,9 +43,10 @@ def _to_be_started_again() -> Iterator[None]:
         sys.exit(ros_node.START_AGAIN)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('recovery.py', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('rules', metavar='FILE', help='the rules (example: config/recovery.yaml)')
     parser.add_argument('--monitor', default='/self_awareness', metavar='NAME',
                         help='of the monitor (default: /self_awareness)')
-    return parser
+
+
+main = cli.Program('recovery.py', __doc__, _EPILOG, _arguments, _recover, is_node=True)

@@ -57,11 +57,6 @@ examples:
 """
 
 
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _score, argv)
-
-
 def _score(arguments: argparse.Namespace) -> int:
     if arguments.open and arguments.report is None:
         raise ValueError('--open: opens the report; name it by --report FILE.html')
@@ -228,8 +223,7 @@ def _rows(judged: Sequence[Judged], threshold: Optional[float]) -> Iterator[Sequ
                        limit, int(abnormal))
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('score', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
                         help='a recording, or a folder of bags')
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
@@ -253,4 +247,6 @@ def _parser() -> argparse.ArgumentParser:
     cli.add_detector_argument(group)
     group.add_argument('--csv', metavar='FILE', help='write the score of every window')
     cli.add_settle_time(group)
-    return parser
+
+
+main = cli.Program('score', __doc__, _EPILOG, _arguments, _score)

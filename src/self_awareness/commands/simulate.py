@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import List, Optional, Sequence, Tuple
+from typing import List, Optional, Tuple
 
 from self_awareness import progress
 from self_awareness.commands import cli
@@ -25,11 +25,6 @@ examples:
   simulate -o bags --fault cc1@30 --seed 7   bags/cc1_7.bag, the laser's driver dies after 30 s
   simulate -o bags --fault half:camera       bags/half_camera_1.bag
 """
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _simulate, argv)
 
 
 def _simulate(arguments: argparse.Namespace) -> None:
@@ -58,8 +53,7 @@ def _graph(scenario: Scenario, fault: Optional[InducedFault]) -> RobotGraph:
     return graph
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('simulate', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('-o', '--output', type=Path, required=True, metavar='DIR_OR_BAG',
                         help='a name that ends in .bag, or a folder')
     parser.add_argument('--duration', type=cli.above_zero('a length in s'), default=100.0,
@@ -72,7 +66,6 @@ def _parser() -> argparse.ArgumentParser:
                              '(default: in the middle)')
     parser.add_argument('--scenario', type=Path, metavar='FILE',
                         help='the robot (default: config/follow_me.yaml of the package)')
-    return parser
 
 
 def _fault(text: Optional[str], duration_s: float) -> Optional[InducedFault]:
@@ -116,3 +109,6 @@ def _bags(output: Path, runs: int, seed: int,
             raise FileExistsError(f'{bag} exists already: remove it, or choose another --output '
                                   'or --seed')
     return bags
+
+
+main = cli.Program('simulate', __doc__, _EPILOG, _arguments, _simulate)

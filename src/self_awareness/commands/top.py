@@ -6,7 +6,7 @@ import copy
 import sys
 import threading
 from functools import partial
-from typing import Any, Callable, Dict, List, Optional, Sequence
+from typing import Any, Callable, Dict, List
 
 import rosgraph
 import rospy
@@ -28,11 +28,6 @@ gone.
 
 _MASTER_EVERY_S = 1.0
 _GOODBYE_S = 2.0
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _top, cli.of_node(argv))
 
 
 def _top(arguments: argparse.Namespace) -> None:
@@ -117,8 +112,9 @@ def _calls(monitor: str) -> Dict[str, Callable[..., str]]:
             'm': mute, 'a': accept}
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('top', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('monitor', nargs='?', default='/self_awareness', metavar='MONITOR',
                         help='name of the monitor (default: /self_awareness)')
-    return parser
+
+
+main = cli.Program('top', __doc__, _EPILOG, _arguments, _top, is_node=True)

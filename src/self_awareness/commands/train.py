@@ -18,9 +18,8 @@ from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.parts import BagPart, by_folder, look
 from self_awareness.reporting import model_text, verdict
-from self_awareness.reporting.model_summary import summarise
 from self_awareness.stamps import SECOND_NS
-from self_awareness.training import live_graph, many_bags
+from self_awareness.training import many_bags, robot_graph
 from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.training.robot_graph import RobotGraph
 from self_awareness.workers import Cluster, Workers, on_this_machine
@@ -41,11 +40,6 @@ examples:
         -o fleet.model
   train /nfs/bags/*.bag --scheduler 10.0.0.1:8786 --skip-bad -o fleet.model
 """
-
-
-def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
-    return cli.run(_parser(), _train, argv)
 
 
 def _train(arguments: argparse.Namespace) -> None:
@@ -91,7 +85,7 @@ def _train(arguments: argparse.Namespace) -> None:
                      *verdict.lines(model)])
     if arguments.details:
         cli.print_lines([
-            *model_text.lines(summarise(model)),
+            *model_text.lines(model_text.summarise(model)),
             *heads_and_tails.lines(_silences(trained), '--start', '--end')])
     left_out = arguments.leave_out_holes
     for line in holes.lines(found, [] if left_out else model.coverage(),
@@ -118,7 +112,7 @@ def _silences(trained: Trained) -> List[Tuple[BagPart, Silences]]:
 def _live_graph(base: Optional[TrainedModel]) -> RobotGraph:
     """Return the running robot's graph, whose edges take the place of those that the base has."""
     try:
-        graph = live_graph.fetch()
+        graph = robot_graph.fetch()
     except ValueError as error:
         raise ValueError(f'--graph: {error}') from error
     if base is not None:
@@ -175,8 +169,7 @@ def _check_distinct(parts: Sequence[BagPart]) -> None:
             others.append(part)
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = cli.parser('train', __doc__, _EPILOG)
+def _arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
                         help='a recording of normal operation, or a folder of them; delays never '
                              'cross from one to the next')
@@ -227,4 +220,6 @@ def _parser() -> argparse.ArgumentParser:
                             f'{Counting.window / SECOND_NS:g})')
     group.add_argument('--horizon', type=cli.seconds, metavar='S',
                        help='delays of this many s or more share one bin (default: no horizon)')
-    return parser
+
+
+main = cli.Program('train', __doc__, _EPILOG, _arguments, _train)

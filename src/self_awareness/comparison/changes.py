@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections import defaultdict
 from dataclasses import dataclass
-from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, List, Optional, Sequence, Set, Tuple
 
 from self_awareness import RATE_SPAN, USUAL_SHARES, EvidenceModel
 from self_awareness.comparison import chance
@@ -90,9 +90,11 @@ def compare(before: Side, after: Side) -> Comparison:
     rates = [_rate(before, after, kind) for kind in both]
     timed = [(kind, kind) for kind in both
              if all(_has_enough(side, (kind, kind)) for side in (before, after))]
-    gaps = _present(_shift(GAP, before, after, pair, USUAL_SHARES[1]) for pair in timed)
+    gaps = list(filter(None, (_shift(GAP, before, after, pair, USUAL_SHARES[1])
+                              for pair in timed)))
     related = _related(before, after)
-    delays = _present(_shift(DELAY, before, after, pair, _MEDIAN) for pair in related or [])
+    delays = list(filter(None, (_shift(DELAY, before, after, pair, _MEDIAN)
+                                for pair in related or [])))
     number = (len(rates) + len(timed) + len(related or [])
               + len(set(before.ids) ^ set(after.ids)))
     level = chance.LEVEL / max(number, 1)
@@ -117,10 +119,6 @@ def compare(before: Side, after: Side) -> Comparison:
                 found.append(_one_sided(what, here, there, kind))
     return Comparison(before, after, _ranked(found, before.model.graph | after.model.graph),
                       sorted(unsure), None if related is None else len(related))
-
-
-def _present(candidates: Iterable[Optional[_Candidate]]) -> List[_Candidate]:
-    return [each for each in candidates if each is not None]
 
 
 def _inflation(candidates: Sequence[_Candidate]) -> float:

@@ -27,8 +27,7 @@ class Announcer:
         self._status_topic = rospy.Publisher('~status', SelfAwareness, queue_size=1)
         self._name = status_name(rospy.get_name(), 'communication')
         self._hardware_id = str(rospy.get_param('~hardware_id', 'none'))
-        self._lock = threading.Lock()
-        self._status = DiagnosticStatus()  # Guarded by _lock.
+        self._status = DiagnosticStatus()  # replaced as a whole: it needs no lock
         self._change = threading.Event()
         self.say(DiagnosticStatus.OK, 'learning', {})
         threading.Thread(target=self._run, daemon=True).start()
@@ -37,10 +36,8 @@ class Announcer:
         """Set what is published from now on; level: of DiagnosticStatus."""
         status = DiagnosticStatus(level, self._name, message, self._hardware_id,
                                   [KeyValue(key, value) for key, value in values.items()])
-        with self._lock:
-            changed = status != self._status
+        if status != self._status:
             self._status = status
-        if changed:
             self._change.set()
 
     def _run(self) -> None:
@@ -49,8 +46,7 @@ class Announcer:
             self._change.clear()
             array = DiagnosticArray()
             array.header.stamp = rospy.Time.now()
-            with self._lock:
-                array.status = [self._status]
+            array.status = [self._status]
             try:
                 self._publisher.publish(array)
             except rospy.ROSException:  # the node was shut down meanwhile

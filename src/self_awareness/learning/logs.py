@@ -1,4 +1,5 @@
-"""The event logs of a learning: the folder that they lie in, and what can be used of it."""
+"""The event logs of a learning: the folder that they lie in, what can be used of it,
+and what of that is trained on (docs/learn.md)."""
 from __future__ import annotations
 
 import fcntl
@@ -6,8 +7,8 @@ import glob
 import os
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass
-from typing import Dict, Iterator, List
+from dataclasses import dataclass, field, replace
+from typing import Dict, Iterator, List, Sequence, Set
 
 import numpy as np
 import rosbag
@@ -23,6 +24,11 @@ _ACTIVE = '.active'
 _LOCK = '.lock'
 _UNLOCKED_S = 30.0  # a recorder that was told to end has ended by then
 _POLL_S = 0.1
+
+_TRAINING_SHARE = 2.0 / 3.0
+_SHORTEST_CALIBRATION_S = 30  # a part of a recording, method.md, section 5.1
+_SHORTEST_TRAINING_S = 10
+_BETWEEN_S = 1  # no event belongs to both
 
 
 @dataclass(frozen=True)
@@ -120,6 +126,42 @@ class LogFolder:
                                 (summary.end - summary.start) / SECOND_NS, summary.robot_start,
                                 float(np.clip(silences, 0.0, HEARD_S).sum())))
         return logs
+
+
+@dataclass(frozen=True)
+class Division:
+    """Parts of recordings; none of the training overlaps with one of the calibration."""
+
+    training: List[BagPart] = field(default_factory=list)
+    calibration: List[BagPart] = field(default_factory=list)
+
+
+def divide(logs: Sequence[Log], start_up: float) -> Division:
+    """Cut every recording: the beginning is trained on, the limits are found on the end.
+
+    So both know every start of the robot. What is too short to be cut is trained on as a whole,
+    and what is left of a start that soon ended again is left out.
+
+    Args:
+        logs: in the order of time.
+        start_up: left out after each start of the robot [s].
+    """
+    division = Division()
+    started: Set[int] = set()
+    for log in logs:
+        begin = 0.0 if log.robot_start in started else start_up
+        started.add(log.robot_start)
+        length = log.seconds - begin
+        if length < _SHORTEST_TRAINING_S:
+            continue
+        # Whole seconds, as they are printed.
+        cut = round(begin + _TRAINING_SHARE * length)
+        if log.seconds - cut - _BETWEEN_S < _SHORTEST_CALIBRATION_S:
+            division.training.append(replace(log.part, start=begin or None))
+            continue
+        division.training.append(replace(log.part, start=begin, end=float(cut)))
+        division.calibration.append(replace(log.part, start=float(cut + _BETWEEN_S)))
+    return division
 
 
 def _mended(path: str) -> str:

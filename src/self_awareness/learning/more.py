@@ -9,8 +9,7 @@ from typing import List, Sequence
 
 from self_awareness import Recording, TrainedModel, accepted_file
 from self_awareness.learning.age import LEARNED, Age, Heard
-from self_awareness.learning.division import Division, divide
-from self_awareness.learning.logs import Log
+from self_awareness.learning.logs import Division, Log, divide
 from self_awareness.output_files import replacing
 from self_awareness.parts import BagPart
 from self_awareness.recordings import overlap

@@ -15,8 +15,7 @@ from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 from self_awareness import EncodingRules, why_nothing_is_heard
 from self_awareness.learning import programs
 from self_awareness.learning.announcer import Announcer
-from self_awareness.learning.division import divide
-from self_awareness.learning.logs import HEARD_S, LogFolder
+from self_awareness.learning.logs import HEARD_S, LogFolder, divide
 from self_awareness.learning.recorder import Recorder
 from self_awareness.reporting.text import number_of
 

@@ -11,7 +11,7 @@ from typing import Callable, Dict, Optional
 
 import roslib.packages
 
-from self_awareness.learning.division import Division
+from self_awareness.learning.logs import Division
 
 _POLL_S = 0.5
 

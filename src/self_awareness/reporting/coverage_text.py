@@ -86,8 +86,7 @@ def of_some_robots(model: TrainedModel) -> Dict[str, Any]:
     component."""
     robots: Dict[str, Set[str]] = {}
     for robot, _, _, event_types in model.heard_in:
-        robots.setdefault(robot, set()).update(
-            each.source or each.scope for each in event_types)
+        robots.setdefault(robot, set()).update(each.component for each in event_types)
     if len(robots) < 2:
         robots = {}
     everywhere = set.intersection(*robots.values()) if robots else set()

@@ -6,8 +6,7 @@ from statistics import median
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from self_awareness.calibration import confidence, heads_and_tails
-from self_awareness.calibration.results import FalseAlarms
-from self_awareness.calibration.runs import RECORDED, Injections, JudgedRun
+from self_awareness.calibration.runs import RECORDED, FalseAlarms, Injections, JudgedRun
 from self_awareness.reporting.text import aligned, duration, first_lines
 from self_awareness.stamps import SECOND_NS
 

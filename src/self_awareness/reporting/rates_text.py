@@ -57,5 +57,5 @@ def _by_topic(event_types: Sequence[EventType], counts: Iterable[int]) -> Dict[_
     found: Counter = Counter()
     for kind, count in zip(event_types, counts):
         if count and kind.is_message:
-            found[kind.source or kind.scope, kind.scope] += count
+            found[kind.component, kind.scope] += count
     return dict(found)

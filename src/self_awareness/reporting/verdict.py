@@ -102,7 +102,7 @@ def _why(model: TrainedModel, each: Dict[str, Any]) -> str:
     if each['gaps'] >= model.fewest_gaps:
         return 'all its messages came at one moment'
     messages = max(model.event_count(index) for index, kind in enumerate(model.event_types)
-                   if (kind.source or kind.scope) == each['component'])
+                   if kind.component == each['component'])
     if not messages:
         return 'it sent only latched messages in training'
     return (f'{number_of(messages, "message")} in training, more than {model.fewest_gaps} are '

@@ -6,7 +6,7 @@ from typing import Callable, Dict, FrozenSet, List, Set, Tuple
 
 import numpy as np
 
-from self_awareness import EventType, Waiting
+from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families.emissions import (Emission, Feedback, Once, Sporadic,
                                                           attributes_of, has_header, stalled)
@@ -283,14 +283,14 @@ def _waited(times: np.ndarray, load: np.ndarray, scene: Scene, index: int) -> np
     return in_order(times + waits * load)
 
 
-def _waiting(scene: Scene, origin: int) -> List[Waiting]:
+def _waiting(scene: Scene, origin: int) -> List[Tuple[int, int, int]]:
     """Return what a recorder on the host measures: it stalls with all others."""
-    stretches = []
+    stretches: List[Tuple[int, int, int]] = []
     until = origin + nanoseconds(scene.recorded_from)
     for start, length in zip(*scene.stalls):
         end = origin + nanoseconds(start + length)
         begin = max(origin + nanoseconds(start), until)
         if end > begin:
-            stretches += [Waiting(until, begin, 0), Waiting(begin, end, end - begin)]
+            stretches += [(until, begin, 0), (begin, end, end - begin)]
             until = end
     return stretches

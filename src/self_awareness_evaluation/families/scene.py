@@ -77,13 +77,6 @@ class Conditions:
     stalls_an_hour: float = 0.0
     stall_s: Tuple[float, float] = (0.1, 0.6)  # for how long, at least and at most [s]
 
-    def load(self, times: np.ndarray, phase: float) -> np.ndarray:
-        """Return by how much longer work takes at some times [s]; phase: 0 to 1."""
-        if not self.load_period_s:
-            return np.ones(len(times))
-        turn = 2.0 * np.pi * (times / self.load_period_s + phase)
-        return 1.0 + (self.most_load - 1.0) * (1.0 - np.cos(turn)) / 2.0
-
     def transport(self, sent: np.ndarray, over_link: bool, rng: np.random.Generator) -> np.ndarray:
         """Return when messages arrive that were sent at some times [s], in their order."""
         # A row for each message: what comes later does not change it.
@@ -106,12 +99,6 @@ class Conditions:
         drawn = rng.uniform(size=(len(times), 2))
         hit = drawn[:, 0] < self.hiccups
         return in_order(times - np.log1p(-drawn[:, 1]) * _HICCUP_S * hit)
-
-    def stalls(self, begin: float, end: float,
-               rng: np.random.Generator) -> Tuple[np.ndarray, np.ndarray]:
-        """Return when the host stalls, and for how long [s]."""
-        number = rng.poisson((end - begin) / 3600.0 * self.stalls_an_hour)
-        return np.sort(rng.uniform(begin, end, number)), rng.uniform(*self.stall_s, number)
 
 
 def in_order(times: np.ndarray) -> np.ndarray:
@@ -157,8 +144,11 @@ class Scene:
         self._recording = round(recorded_from * 1e3)
         self._edges = {name: activity.edges(self.begin, self.end, self.of_recording(name))
                        for name, activity in activities.items()}
+        rng = self.of_recording('stalls')
+        number = rng.poisson((end - self.begin) / 3600.0 * conditions.stalls_an_hour)
         # When the host stalls, and for how long.
-        self.stalls = conditions.stalls(self.begin, end, self.of_recording('stalls'))
+        self.stalls = (np.sort(rng.uniform(self.begin, end, number)),
+                       rng.uniform(*conditions.stall_s, number))
         if fault.kind == STALL:
             begin, (begins, lengths) = recorded_from + fault.follows_s, self.stalls
             place = np.searchsorted(begins, begin)
@@ -175,7 +165,11 @@ class Scene:
 
     def load(self, times: np.ndarray) -> np.ndarray:
         """Return by how much longer work takes at some times, 1 or more."""
-        return self.conditions.load(times, self._day_phase)
+        period_s, most = self.conditions.load_period_s, self.conditions.most_load
+        if not period_s:
+            return np.ones(len(times))
+        turn = 2.0 * np.pi * (times / period_s + self._day_phase)
+        return 1.0 + (most - 1.0) * (1.0 - np.cos(turn)) / 2.0
 
     def during(self, activity: str, times: np.ndarray) -> np.ndarray:
         """Return which times [s] lie in an activity; an empty name: all do."""

@@ -8,7 +8,7 @@ from typing import Any, List, Sequence, Tuple
 import pytest
 from conftest import Message, jittery_robot, write_bag
 
-from self_awareness import DetectorParameters, TrainedModel, Waiting, recordings
+from self_awareness import DetectorParameters, TrainedModel, recordings
 from self_awareness.calibration import limits
 from self_awareness.calibration.fault_injection import InjectedFault
 from self_awareness.calibration.runs import JudgedRun, Run, injections, judge_runs
@@ -35,8 +35,8 @@ def starved(recording: RecordingEvents, begin_s: int, end_s: int) -> RecordingEv
     """Return it with what the recorder measured: processes waited for most of some seconds."""
     tenth = SECOND_NS // 10
     return replace(recording, waiting=[
-        Waiting(recording.origin + number * tenth, recording.origin + (number + 1) * tenth,
-                int(0.98 * tenth) if 10 * begin_s <= number < 10 * end_s else 0)
+        (recording.origin + number * tenth, recording.origin + (number + 1) * tenth,
+         int(0.98 * tenth) if 10 * begin_s <= number < 10 * end_s else 0)
         for number in range(1200)])
 
 
@@ -88,19 +88,19 @@ def stood_still(begin: float) -> List[Message]:
     return sorted((moved(stamp), topic, text) for stamp, topic, text in normal(begin))
 
 
-def measured(recording: Any) -> List[Waiting]:
+def measured(recording: Any) -> List[Tuple[int, int, int]]:
     """What the recorder measured. It looked last a little before, and then only after some
     messages had come."""
     begin = recording.origin + int((FROM_S - 0.01) * SECOND_NS)
     end = recording.origin + int((UNTIL_S + 0.01) * SECOND_NS)
-    return [Waiting(recording.origin, begin, 0), Waiting(begin, end, end - begin - 1)]
+    return [(recording.origin, begin, 0), (begin, end, end - begin - 1)]
 
 
 def test_it_is_no_silence_that_a_limit_must_allow(evidence_model: str, tmp_path: Path) -> None:
     """Of two starts, none is outvoted (docs/method.md, section 5.2)."""
     trained = TrainedModel.load(evidence_model)
 
-    def found_after(recording: Any, waiting: Sequence[Waiting]) -> List[float]:
+    def found_after(recording: Any, waiting: Sequence[Tuple[int, int, int]]) -> List[float]:
         trained.calibration, = limits.find(
             trained, DetectorParameters().settle_time, [limits.BUDGET],
             [replace(recording, waiting=waiting)])

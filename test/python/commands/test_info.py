@@ -76,7 +76,7 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, monkey
         [['/scan', ['/slam', '/map_saver', '/watch']]], []])
     monkeypatch.setattr('rosgraph.Master.getTopicTypes', lambda _: [
         ['/scan', 'T'], ['/watch/status', 'self_awareness/SelfAwareness']])
-    monkeypatch.setattr('self_awareness.training.live_graph._hosts',
+    monkeypatch.setattr('self_awareness.training.robot_graph._hosts',
                         lambda _, nodes: {node: 'base' for node in nodes})
     output = str(tmp_path / 'm')
     assert train.main([long_bags[0], '--graph', '-o', output]) == 0

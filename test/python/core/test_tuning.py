@@ -6,7 +6,7 @@ import pickle
 import pytest
 
 from self_awareness import Tuning
-from self_awareness.reporting.model_summary import tuning_lines
+from self_awareness.reporting.model_text import tuning_lines
 
 
 def test_numbers_and_channels_are_known_by_name_and_what_cannot_be_is_told() -> None:

@@ -401,15 +401,13 @@ def test_feedback_comes_between_goal_and_result() -> None:
 def test_the_recorder_stalls_with_its_host() -> None:
     robot = draw('second_stalls', 3)
     recording = robot.start(5, 3600.0)
-    stalls = [each for each in recording.waiting if each.waited]
+    stalls = [each for each in recording.waiting if each[2]]
     assert stalls and len(recording.waiting) == 2 * len(stalls)
-    for stall in stalls:
-        assert 0.8 <= stall.waited / SECOND_NS <= 1.5
-        inside = (recording.stamps > stall.begin) & (recording.stamps < stall.end)
-        assert not inside.any()
-        assert ((recording.stamps >= stall.end)
-                & (recording.stamps < stall.end + SECOND_NS // 100)).any()
-    edges = [edge for each in recording.waiting for edge in (each.begin, each.end)]
+    for begin, end, waited in stalls:
+        assert 0.8 <= waited / SECOND_NS <= 1.5
+        assert not ((recording.stamps > begin) & (recording.stamps < end)).any()
+        assert ((recording.stamps >= end) & (recording.stamps < end + SECOND_NS // 100)).any()
+    edges = [edge for begin, end, _ in recording.waiting for edge in (begin, end)]
     assert edges == sorted(edges)
     assert not draw('timers', 3).start(5, 60.0).waiting
 

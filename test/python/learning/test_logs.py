@@ -10,8 +10,7 @@ from recorded_logs import write_log
 
 from self_awareness import EncodingRules, read_events
 from self_awareness.learning import logs
-from self_awareness.learning.division import divide
-from self_awareness.learning.logs import HEARD_S, Log, LogFolder
+from self_awareness.learning.logs import HEARD_S, Log, LogFolder, divide
 from self_awareness.parts import BagPart
 
 RULES = EncodingRules.defaults()

@@ -9,8 +9,7 @@ from conftest import jittery_robot
 from recorded_logs import write_log
 
 from self_awareness import EncodingRules, TrainedModel
-from self_awareness.learning.division import Division, divide
-from self_awareness.learning.logs import LogFolder
+from self_awareness.learning.logs import Division, LogFolder, divide
 from self_awareness.learning.programs import ProgramError, executable, train_and_calibrate
 
 

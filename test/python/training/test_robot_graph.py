@@ -85,7 +85,7 @@ def test_what_nobody_subscribes_to_is_known_by_name(bags: Bags, tmp_path: Path, 
 
 def test_the_running_robots_graph_is_added(bags: Bags, tmp_path: Path, monkeypatch) -> None:
     RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam'}}).save(graph_file(bags[0]))
-    monkeypatch.setattr('self_awareness.training.live_graph.fetch',
+    monkeypatch.setattr('self_awareness.training.robot_graph.fetch',
                         lambda: RobotGraph({'/map': {'/slam'}}, {'/map': {'/log'}}))
     assert trained(bags, tmp_path / 'm', '--graph').graph == {('/laser', '/scan', '/slam'),
                                                               ('/slam', '/map', '/log')}

@@ -217,7 +217,7 @@ def test_the_graph_is_kept_unless_another_is_asked_for(five: List[str], tmp_path
     model.graph = {('/laser', '/scan', '/slam')}
     model.save(str(output))
     assert trained(five[1:2], output, '--add-to', str(output)).graph == model.graph
-    monkeypatch.setattr('self_awareness.training.live_graph.fetch',
+    monkeypatch.setattr('self_awareness.training.robot_graph.fetch',
                         lambda: RobotGraph({'/x': {'/a'}}, {'/x': {'/b'}}))
     again = trained(five[2:3], output, '--add-to', str(output), '--graph')
     assert again.graph == {('/a', '/x', '/b')}

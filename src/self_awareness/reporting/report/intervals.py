@@ -147,7 +147,7 @@ def _silence_of_all(judged: Judged, alarm: Alarm) -> Silence:
     """Return the longest time without any event, or any of some computers, as an alarm stood."""
     silent = alarm.silent if alarm.silent is not None and alarm.silent.hosts else None
     kinds = [number for number, kind in enumerate(judged.recording.event_types)
-             if silent is None or (kind.source or kind.scope) in silent.components]
+             if silent is None or kind.component in silent.components]
     return _longest(judged, judged.edges_of(*kinds), alarm.begin, alarm.end)
 
 
