@@ -171,14 +171,6 @@ def test_a_range_or_horizon_that_does_not_fit_is_told(robot_bags, tmp_path: Path
         assert told in error_of(train, [robot_bags[0], *options, *output])
 
 
-def test_ctrl_c_ends_it(monkeypatch, model_file: str) -> None:
-    def interrupted(_: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(info.verdict, 'lines', interrupted)
-    assert info.main([model_file]) == 130
-
-
 @pytest.mark.parametrize('name, told', [
     (b'gr\xfc\xdf.bag', 'UTF-8'), (b'a\x1b[2J.bag', 'control characters'),
     ('a\u202eb.bag'.encode(), 'control characters'), (b'a\nb.bag', 'control characters')])

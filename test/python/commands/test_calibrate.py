@@ -8,7 +8,7 @@ import re
 from typing import Callable, List, Tuple
 
 import pytest
-from conftest import robot, trained
+from conftest import robot
 
 from self_awareness import Roc, TrainedModel
 from self_awareness.calibration import confidence
@@ -123,17 +123,6 @@ def test_recordings_that_were_trained_on_are_refused(run, robot_bags: Bags, mode
     assert not (tmp_path / 'm').exists()
 
 
-def test_the_part_that_was_not_trained_on_is_welcome(robot_bags: Bags, tmp_path) -> None:
-    model = str(tmp_path / 'm')
-    trained([robot_bags[0]], tmp_path / 'm', '--end', '15', '--detector', 'both')
-    arguments = ['--model', model, '--detector', 'paper', '--inject', 'starve', '-o', model,
-                 '--normal']
-    assert calibrate.main([*arguments, f'{robot_bags[0]}@14']) == 1
-    assert calibrate.main([*arguments, f'{robot_bags[0]}@15.1']) == 0
-    recording = TrainedModel.load(model).paper_calibration.normal[0]
-    assert recording.start == round(1015.1 * 1e9)
-
-
 def test_a_fault_that_is_over_before_the_detector_settled_is_refused(
         run, make_bag: Callable[..., str], tmp_path) -> None:
     bag = make_bag('early.bag', robot(3000.0))
@@ -161,17 +150,6 @@ def test_faults_that_score_higher_get_a_warning(run, make_bag: Callable[..., str
                            str(tmp_path / 'm'), '--detector', 'paper', '--cutoff', 'fpr=0.1']) == 0
     captured = capsys.readouterr()
     assert captured.err.startswith('calibrate: warning: AUC 0.')
-
-
-def test_a_cutoff_is_read_and_written_and_others_are_refused() -> None:
-    for text, rule in (('youden', ThresholdRule('youden', 0.0)),
-                       ('closest', ThresholdRule('closest', 0.0)),
-                       ('fpr=0', ThresholdRule('fpr', 0.0)),
-                       ('fpr=1e-3', ThresholdRule('fpr', 0.001))):
-        assert ThresholdRule.parse(text) == ThresholdRule.parse(str(rule)) == rule
-    for text in ('best', 'fpr', 'fpr=', 'fpr=-1', 'fpr=1', 'fpr=nan', 'fpr=2'):
-        with pytest.raises(ValueError):
-            ThresholdRule.parse(text)
 
 
 def test_intervals_are_those_of_the_textbooks() -> None:

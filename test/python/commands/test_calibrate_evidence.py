@@ -1,7 +1,6 @@
 """`calibrate` for the evidence detector: the limits, what is said of them, and what is refused."""
 from __future__ import annotations
 
-import csv
 import math
 import os
 import re
@@ -126,18 +125,6 @@ def test_faults_are_told_in_a_table_and_without_details_those_that_were_not_foun
     assert rows == [head, ['slow:1.01', '/laser', '0 of 1', '-', '-', '-']]
 
 
-def test_a_fault_of_one_window_in_the_csv(run, tmp_path) -> None:
-    table = tmp_path / 'w.csv'
-    assert run('--inject', 'crash:/laser', '--csv', str(table))[0] == 0
-    with open(table, newline='') as file:
-        rows = list(csv.DictReader(file))
-    assert {row['fault'] for row in rows} == {'', 'crash:/laser'}
-    normal = [float(row['score']) for row in rows if row['label'] == 'normal']
-    assert len(normal) == pytest.approx(1150, abs=2) and min(normal) >= -1.0
-    abnormal = [float(row['score']) for row in rows if row['label'] == 'abnormal']
-    assert sum(score < -1.0 for score in abnormal) > 0.95 * len(abnormal)
-
-
 @pytest.mark.parametrize('arguments, parts', [
     (('--cutoff', 'youden'), ['--cutoff', '--detector paper', '--budget']),
     (('--detector', 'paper', '--budget', '1'), ['--budget', '--detector evidence', '--cutoff']),
@@ -152,14 +139,6 @@ def test_an_error_names_the_way_out_and_writes_nothing(run, tmp_path, arguments,
     for part in parts:
         assert part in err
     assert os.listdir(tmp_path) == []
-
-
-def test_a_model_that_watches_nothing_is_what_is_wrong(robot_bags: Bags, long_bags: Bags,
-                                                       tmp_path) -> None:
-    model = str(tmp_path / 'm')
-    trained([f'{robot_bags[0]}@0-0.2'], tmp_path / 'm')
-    error = error_of(calibrate, ['--model', model, '-o', model, '--normal', long_bags[1]])
-    assert f'{model}: the model watches nothing' in error and '--normal' not in error
 
 
 def test_a_source_that_is_silent_after_the_middle_is_no_obstacle(tmp_path: Path, make_bag) -> None:
@@ -178,3 +157,11 @@ def test_a_source_that_is_silent_after_the_middle_is_no_obstacle(tmp_path: Path,
     # Who names it wants to know.
     assert 'nothing would change' in error_of(calibrate, [*arguments, '--inject',
                                                           'crash:/starter'])
+
+
+def test_a_model_that_watches_nothing_is_what_is_wrong(robot_bags: Bags, long_bags: Bags,
+                                                       tmp_path) -> None:
+    model = str(tmp_path / 'm')
+    trained([f'{robot_bags[0]}@0-0.2'], tmp_path / 'm')
+    error = error_of(calibrate, ['--model', model, '-o', model, '--normal', long_bags[1]])
+    assert f'{model}: the model watches nothing' in error and '--normal' not in error

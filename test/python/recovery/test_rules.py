@@ -115,13 +115,6 @@ def test_an_error_names_the_file_the_key_and_the_way_out(tmp_path: Path, data: A
     assert '\n' not in str(caught.value)
 
 
-@pytest.mark.parametrize('text', ['[a', '- a\n', 'text', 'a: !!python/name:os.system',
-                                  'rules: &a [*a]', 'delay: 1\ndelay: 2\n'])
-def test_what_is_no_such_file_is_refused_by_its_name(tmp_path: Path, text: str) -> None:
-    with pytest.raises(ValueError, match='r.yaml: '):
-        load(tmp_path, text)
-
-
 _VALUES = strategies.recursive(
     strategies.none() | strategies.booleans() | strategies.integers() | strategies.floats()
     | strategies.sampled_from(['/player', '/*', 'silent', '/rosout', ' ', '']),

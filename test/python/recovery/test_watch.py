@@ -224,8 +224,3 @@ def test_where_a_silence_is_not_known_it_has_died_since_windows_name_it() -> Non
     assert tested.faults(0.3) == [died('/player')]
     tested.on_status(1.0, at(1.0, suspect('/player')))
     assert tested.faults(1.0) == [died('/player', since=1.0)], 'it was not named for 0.7 s'
-
-
-def test_who_is_slow_need_not_be_so_without_a_pause() -> None:
-    tested = watch(said=status(suspect('/player', 'slow'), kind='slow'))
-    assert tested.faults(0.0) == [Fault(7, '/player', 'slow', True)]
