@@ -1,4 +1,4 @@
-"""package.xml names all that CMake, the Python code, its linters and the tests need.
+"""package.xml names all that CMake, the Python code and the tests need.
 
 rosdep and bloom read nothing else, and no machine of the tests has the keys of rosdep: what is
 missing here would be noticed on a robot.
@@ -6,7 +6,6 @@ missing here would be noticed on a robot.
 from __future__ import annotations
 
 import ast
-import configparser
 import re
 import sys
 from pathlib import Path
@@ -49,9 +48,6 @@ OPTIONAL = {
     'selenium',             # the test of the report in a browser
     'dynamic_reconfigure',  # the evaluation, which is not installed
 }
-OF_THE_BUILD = {'catkin', 'message_generation', 'message_runtime', 'python3-setuptools',
-                'python3-pytest-xdist', 'rosbash'}
-"""What builds, tests or starts without a name in the code."""
 OF_THE_SYSTEM = {'arpa', 'linux', 'netinet', 'sys'}  # folders of C headers
 PROGRAMS = ('dot', 'rosbag', 'roscore', 'roslaunch', 'rosmaster', 'rosnode', 'rospack', 'rosparam',
             'rosrun', 'rosservice', 'rostopic')
@@ -182,33 +178,3 @@ def test_what_the_tests_need() -> None:
         needed.add('pytest-xdist')
     assert {'gtest', 'hypothesis', 'nlohmann_json', 'pytest', 'pytest-xdist', 'rostopic'} <= needed
     assert _missing(needed, *TEST) == []
-
-
-def test_nothing_is_named_that_nobody_needs() -> None:
-    code = (*INSTALLED, *TESTS, 'benchmark/*.py', 'examples/*.py')
-    needed = (_found_by_cmake('CMakeLists.txt', 'src/core/CMakeLists.txt',
-                              'test/**/CMakeLists.txt')
-              | _included('include', 'src', 'test', 'benchmark') | _imported(*code)
-              | _started(*code))
-    text = ''.join(path.read_text(encoding='utf-8')
-                   for path in _files('launch/*.launch', 'test/*.test', 'msg/*.msg', 'srv/*.srv',
-                                      'test/CMakeLists.txt', 'setup.cfg',
-                                      '.pre-commit-config.yaml'))
-    named = _named('buildtool_depend', 'build_export_depend', 'test_depend', *BUILD, *RUN)
-    keys = {KEYS.get(name, name) for name in needed}
-    unused = {key for key in named - OF_THE_BUILD - keys
-              if key.replace('python3-', '') not in needed
-              and not re.search(rf'\b{key.replace("python3-", "")}\b', text)}
-    assert unused == set()
-
-
-def test_what_setup_cfg_configures_and_what_mypy_takes_as_it_is() -> None:
-    config = configparser.ConfigParser()
-    config.read(str(ROOT / 'setup.cfg'))
-    linters = {name for name in config.sections() if '-' not in name}
-    assert linters == {'flake8', 'mypy'}
-    assert _missing(linters, 'test_depend') == []
-    others = {module.rpartition('.')[0].partition('.')[0] for name in config.sections()
-              if name.startswith('mypy-') for module in name[len('mypy-'):].split(',')}
-    assert _missing({name for name in others if not name.startswith('self_awareness')
-                     and name not in OPTIONAL}, *TEST) == []

@@ -69,17 +69,6 @@ def test_the_alarm_and_its_suspect_are_printed(model: str, dead_laser: str,
     assert re.search(r'^    1\. /laser /scan std_msgs/String: silent for ', out, re.MULTILINE)
 
 
-def test_a_fault_during_the_alarm_is_printed_with_its_time(model: str, make_bag: MakeBag) -> None:
-    bag = make_bag('two.bag', [m for m in jittery_robot(3000.0, 60.0, 3)
-                               if not (m[0] >= 3012.0 and m[1] == '/laser')
-                               and not (m[0] >= 3040.0 and m[1] == '/battery')])
-    out = printed_by(score, [bag, '--model', model])
-    assert len(alarms(out)) == 1
-    since, = re.findall(r'^    since ([\d.]+) s /battery /charge std_msgs/String: silent for ',
-                        out, re.MULTILINE)
-    assert 40.0 < float(since) < 43.0
-
-
 def test_a_suspicion_is_printed_with_its_reason(model: str, new: str) -> None:
     lines = printed_by(score, [new, '--model', model]).splitlines()
     assert lines[0] == f'{new}: 30 s, 1 suspicion'

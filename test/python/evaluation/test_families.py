@@ -286,3 +286,12 @@ def test_a_death_counts_from_the_first_message_that_is_missing() -> None:
         assert (heard < death.onset).all()
         assert (len(heard) == 0) == (death.kind == UNHEARD)
         assert death.onset < death.recording.end - 60 * SECOND_NS
+
+
+@pytest.mark.parametrize('gap_s, however_slow, lost', [(0.1, 0.0, 0.1), (0.2, 0.0, 0.0),
+                                                       (0.1, 0.2, 0.1), (2.0, 0.2, 0.2)])
+def test_queues_lose_what_comes_soon_after_another_and_links_lose_however_slow(
+        gap_s: float, however_slow: float, lost: float) -> None:
+    received = Conditions(lost=0.1, lost_however_slow=however_slow).received(
+        np.arange(5000) * gap_s, np.random.default_rng(1))
+    assert 1.0 - received.mean() == pytest.approx(lost, abs=0.02)

@@ -7,11 +7,12 @@ from typing import Any, Callable, List
 
 import pytest
 import yaml
-from simulated_runs import MS, SCENARIO, output, robot
+from simulated_runs import MS, SCENARIO, S, output, robot
 
 from self_awareness.yaml_section import SectionError
 from self_awareness_follow_me.component import Component, Message, Publish, Work
-from self_awareness_follow_me.component_spec import ComponentSpec, Task
+from self_awareness_follow_me.component_spec import (ComponentSpec, Duration, Hypothesis, Need,
+                                                     Task)
 from self_awareness_follow_me.scenario import load_scenario
 
 
@@ -68,11 +69,51 @@ def test_error_names_file_and_key(tmp_path: Path, where: List[Any],
         load_scenario(path)
 
 
+def _component(*tasks: Task) -> Component:
+    return Component(ComponentSpec('it', 'a', tasks), random.Random(1))
+
+
 def test_busy_worker_takes_the_newest_message_next() -> None:
-    spec = ComponentSpec('it', 'a', (Task((output('out'),), upon='in'),))
-    component = Component(spec, random.Random(1), lambda now: now)
+    component = _component(Task((output('out'),), upon='in'))
     assert component.receive(0, Message('in', 1)) == [Work(10 * MS, 0)]
     assert component.receive(1, Message('in', 2)) == []
     assert component.receive(2, Message('in', 3)) == []
     assert component.work_done(3) == [Publish(Message('out', 1, content=3)), Work(10 * MS, 0)]
     assert component.work_done(4) == [Publish(Message('out', 3, content=4))]
+
+
+@pytest.mark.parametrize('need, at, holds', [
+    (Need('other', within=1.0), 11 * S, True),
+    (Need('other', within=1.0), 11 * S + 1, False),
+    (Need('other', stamps_within=0.5), 20 * S, True),
+    (Need('other', stamps_within=0.4), 10 * S, False),
+    (Need('other', one_of=('yes', 'no')), 20 * S, True),
+    (Need('other', one_of=('no',)), 20 * S, False),
+    (Need('silent', within=1.0), 10 * S, False),
+])
+def test_needs(need: Need, at: int, holds: bool) -> None:
+    component = _component(Task((output('out'),), upon='in', needs=(need,)))
+    component.receive(10 * S, Message('other', 9 * S, 'yes'))
+    assert bool(component.receive(at, Message('in', 9 * S - 500 * MS))) is holds
+
+
+def test_hypothesis_is_inserted_updated_and_deleted() -> None:
+    life = Hypothesis(confirm=3, discard_after=1.0, insert=0, update=1, delete=9)
+    component = _component(Task((output('out', 0.0),), upon='in', every=Duration(0.25),
+                                hypothesis=life))
+    component.start(0)
+
+    def told(requests: List[Any], now: int) -> Any:
+        if not any(isinstance(request, Work) for request in requests):
+            return None
+        return component.work_done(now)[0].message.value
+
+    def track(now: int) -> Any:
+        return told(component.receive(now, Message('in', now)), now)
+
+    def check(now: int) -> Any:
+        return told(component.wake(now, 0), now)
+
+    assert [track(t * 200 * MS) for t in range(5)] == [None, None, 0, 1, 1]
+    assert check(1800 * MS) is None and check(1801 * MS) == 9 and check(3 * S) is None
+    assert [track(4 * S + t * 200 * MS) for t in range(4)] == [None, None, 0, 1]

@@ -8,7 +8,7 @@ import pytest
 from conftest import Message, jittery_robot, trained, write_bag
 
 from self_awareness import EventType, TrainedModel, load
-from self_awareness.commands import convert, merge
+from self_awareness.commands import merge
 from self_awareness.training.numbered_names import Heard, find
 
 LENGTH_S = 40.0
@@ -108,12 +108,6 @@ def test_training_takes_it_as_one_and_says_so(bags, tmp_path: Path, capsys) -> N
     crash = write_bag(tmp_path / 'crash.bag', numbered_robot(9000.0, 51511, 20.0))
     assert [(alarm.kind, alarm.culprit) for alarm in load(str(tmp_path / 'm')).judge(crash)
             if alarm.level == 'ERROR'] == [('silent', PLAIN)]
-
-
-def test_event_logs_say_the_same(bags, tmp_path: Path) -> None:
-    log = str(tmp_path / 'log.bag')
-    assert convert.main([*bags, '-o', log]) == 0
-    assert names(trained([log], tmp_path / 'm')) == sorted(ONE)
 
 
 def test_what_is_added_later_is_the_same(bags, tmp_path: Path) -> None:
