@@ -72,18 +72,6 @@ def test_healed_is_what_is_gone_for_long_enough(gone: float, step: str) -> None:
     assert [what for _, what in climb(tested, 1.0 + gone, 1.0 + gone + WAIT)][:1] == [step]
 
 
-def test_what_comes_and_goes_is_not_healed() -> None:
-    tested = ladder(delay=0.0, limit=3)
-    steps = []
-    for lap in range(100):
-        now = 8.0 * lap
-        steps += climb(tested, now, now + 4.0)
-        steps += climb(tested, now + 4.0, now + 8.0, ())
-    assert [what for _, what in steps] == [
-        'call /player/reset', 'stop /player', 'stop /player, /slam']
-    assert '3 actions in an hour' in tested.climbs()[0].gave_up
-
-
 def test_what_comes_back_has_to_stand_for_the_delay_again() -> None:
     tested = ladder()
     assert climb(tested, 0.0, WAIT + 4.0) == [(DELAY, 'call /player/reset')]
