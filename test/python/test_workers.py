@@ -3,9 +3,11 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 from pathlib import Path
-from typing import Any, Tuple
+from typing import Any, Callable, Tuple
 
 import pytest
 from conftest import wait_until
@@ -13,6 +15,16 @@ from tqdm import tqdm
 
 from self_awareness import progress
 from self_awareness.workers import InProcess, Processes, Workers
+
+PROGRAM = """
+import signal
+import sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # who runs the tests may ignore it
+sys.path.insert(0, {tests!r})
+from pathlib import Path
+from test_workers import begin_and_hang, Processes
+list(Processes(2).map(begin_and_hang, Path({folder!r}), range(2), "test"))
+"""
 
 EVERYONE = [InProcess(), Processes(1), Processes(3)]
 
@@ -33,6 +45,11 @@ def fail_at_two(_: None, number: int) -> int:
     if number == 2:
         raise ValueError('two is too much')
     return number
+
+
+def begin_and_hang(folder: Path, number: int) -> None:
+    (folder / f'{number}').write_text(str(os.getpid()))
+    signal.pause()
 
 
 @pytest.mark.parametrize('workers', EVERYONE)
@@ -100,6 +117,18 @@ def answer_at_length(folder: Path, number: int) -> Any:
     return bytes(LONG) if number else 0
 
 
+@pytest.mark.parametrize('whom', [os.kill, os.killpg])
+def test_ctrl_c_ends_all_at_once(whom: Callable[[int, int], None], tmp_path: Path) -> None:
+    program = PROGRAM.format(tests=str(Path(__file__).parent), folder=str(tmp_path))
+    with subprocess.Popen([sys.executable, '-c', program], start_new_session=True,
+                          stderr=subprocess.PIPE, text=True) as process:
+        wait_until(lambda: len(begun(tmp_path)) == 2, 'two processes hang')
+        whom(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=2.0)
+    assert not any(map(alive, begun(tmp_path)))
+    assert said.count('Traceback') == 1 and said.endswith('KeyboardInterrupt\n')
+
+
 def alive(pid: int) -> bool:
     try:
         return Path(f'/proc/{pid}/stat').read_text().rsplit(')', 1)[1].split()[0] != 'Z'
@@ -122,9 +151,18 @@ def test_what_is_not_wanted_any_more_is_not_waited_for(tmp_path: Path) -> None:
 
 def _second_hangs(folder: Path, number: int) -> int:
     if number > 0:
-        (folder / f'{number}').write_text(str(os.getpid()))
-        signal.pause()
+        begin_and_hang(folder, number)
     return number
+
+
+@pytest.mark.parametrize('how', [signal.SIGTERM, signal.SIGKILL])
+def test_no_process_outlives_the_program(how: signal.Signals, tmp_path: Path) -> None:
+    program = PROGRAM.format(tests=str(Path(__file__).parent), folder=str(tmp_path))
+    with subprocess.Popen([sys.executable, '-c', program]) as process:
+        wait_until(lambda: len(begun(tmp_path)) == 2, 'two processes hang')
+        os.kill(process.pid, how)
+        process.wait()
+    wait_until(lambda: not any(map(alive, begun(tmp_path))), 'the processes end')
 
 
 def test_waiting_ends_where_no_bar_is_shown() -> None:

@@ -71,33 +71,22 @@ def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
     ({'rules': ['/player']}, 'rules[0]', 'expected keys'),
     ({**rule(), 'delays': 1}, 'delays', 'unknown key; allowed are: delay, dry_run'),
     ({**rule(), 'delay': -1}, 'delay', 'from 0 to 86400'),
-    ({**rule(), 'delay': float('nan')}, 'delay', 'finite number'),
     ({**rule(), 'wait': 0}, 'wait', 'from 1 to 86400'),
     ({**rule(), 'grace': 0}, 'grace', 'from 0.1 to 60'),
-    ({**rule(), 'limit': 0}, 'limit', 'from 1 to 200'),
-    ({**rule(), 'limit': 1.5}, 'limit', 'an integer'),
     ({**rule(), 'limit': 201}, 'limit', 'from 1 to 200'),
     ({**rule(), 'limit_of_all': True}, 'limit_of_all', 'an integer'),
     ({**rule(), 'dry_run': 'yes please'}, 'dry_run', 'true or false'),
-    ({'rules': [{'kinds': ['silent'], 'steps': GOOD['steps']}]}, 'rules[0].component', 'missing'),
     (rule(component='player'), 'rules[0].component', 'no full name'),
     (rule(component='/*'), 'rules[0].component', 'patterns are not allowed'),
-    (rule(component=['/player']), 'rules[0].component', 'expected a text'),
-    (rule(kinds='silent'), 'rules[0].kinds', 'expected a list'),
     (rule(kinds=[]), 'rules[0].kinds', 'at least one'),
-    (rule(kinds=[1]), 'rules[0].kinds', 'expected texts'),
     (rule(kinds=['dead']), 'rules[0].kinds', 'choose from silent, topic silent'),
     (rule(kinds=['all silent']), 'rules[0].kinds', 'blames no component'),
-    (rule(steps=[]), 'rules[0].steps', 'at least one'),
-    (rule(steps=['stop']), 'rules[0].steps[0]', 'expected keys'),
-    (rule(step=[]), 'rules[0].step', 'unknown key'),
     (step(), 'rules[0].steps[0].call', 'give call or stop'),
     (step(call='/a', stop=['/b']), 'rules[0].steps[0].call', 'give call or stop'),
     (step(call='/a', wait=3), 'rules[0].steps[0].wait', 'unknown key'),
     (step(call='reset'), 'rules[0].steps[0].call', 'no full name'),
     (step(call='/self_awareness/clear'), 'rules[0].steps[0].call', 'it is the monitor'),
     (step(call='/self_awareness_recovery/hold'), 'rules[0].steps[0].call', 'recovery itself'),
-    (step(stop=[]), 'rules[0].steps[0].stop', 'at least one'),
     (step(stop=['/player', '/player']), 'rules[0].steps[0].stop', 'twice'),
     (step(stop=['/.*']), 'rules[0].steps[0].stop', 'patterns are not allowed'),
     (step(stop=['/']), 'rules[0].steps[0].stop', 'no full name'),
@@ -189,18 +178,6 @@ def test_the_last_ones_are_kept_and_long_results_are_cut(tmp_path: Path) -> None
     assert len(written.actions[0].result) == 500
     written.save(str(tmp_path / 'a.actions'))
     assert history.load(str(tmp_path / 'a.actions')) == written
-
-
-@pytest.mark.parametrize('text, key', [
-    ('{}}', 'not YAML'), ('[]', 'the file'), ('{"action": []}', 'action'),
-    ('{"held_until": -1}', 'held_until'), ('{"actions": [{}]}', 'actions[0].incident'),
-    ('{"actions": [{"incident": "1"}]}', 'actions[0].incident')])
-def test_a_damaged_file_is_named(tmp_path: Path, text: str, key: str) -> None:
-    path = tmp_path / 'a.actions'
-    path.write_text(text)
-    with pytest.raises(ValueError) as caught:
-        history.load(str(path))
-    assert f'a.actions: {key}: ' in str(caught.value)
 
 
 def test_it_lies_where_the_monitor_keeps_its_incidents(monkeypatch: pytest.MonkeyPatch) -> None:
