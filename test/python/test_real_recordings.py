@@ -66,6 +66,20 @@ def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path:
     assert all(alarm.end < 24.0 for alarm in alarms if alarm.start < 24.0)
 
 
+def test_without_an_option_the_outage_is_found(wheeled_robot: Path, tmp_path: Path,
+                                               capsys) -> None:
+    """The start-up, until 23.8 s, is left out by itself."""
+    model = str(tmp_path / 'm')
+    assert train.main([*(str(wheeled_robot / f'{day}_normal.bag') for day in ('feb13', 'jan17')),
+                       '-o', model, '--details']) == 0
+    assert 'feb13_normal.bag@23.8: ' in capsys.readouterr().out
+    outage = next(alarm for alarm in alarms_in(wheeled_robot / 'feb13_outage.bag', model)
+                  if alarm.end > 28.0)
+    assert 28.0 < outage.start < 31.0
+    assert outage.suspects[0] in ('/motors_imu', '/urg_node', '/go_forward')
+    assert '/slam_gmapping' not in outage.suspects, 'it goes on'
+
+
 def test_evidence_finds_an_outage_and_that_the_laser_is_gone(wheeled_robot: Path,
                                                              tmp_path: Path, capsys) -> None:
     """With the preliminary limits of the training: its recordings are too short for others.

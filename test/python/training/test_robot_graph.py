@@ -155,3 +155,11 @@ def test_what_not_every_start_is_known_to_have_is_not_expected(
     expected = trained(bags, tmp_path / 'robot.model').subscriptions
     assert MISSING not in expected
     assert bool(expected) == (names == ('1', '2', 'deaf'))
+
+
+def test_the_running_robots_graph_is_added(bags: Bags, tmp_path: Path, monkeypatch) -> None:
+    RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam'}}).save(graph_file(bags[0]))
+    monkeypatch.setattr('self_awareness.training.live_graph.fetch',
+                        lambda: RobotGraph({'/map': {'/slam'}}, {'/map': {'/log'}}))
+    assert trained(bags, tmp_path / 'm', '--graph').graph == {('/laser', '/scan', '/slam'),
+                                                              ('/slam', '/map', '/log')}
