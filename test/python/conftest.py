@@ -8,6 +8,7 @@ import io
 import json
 import os
 import random
+import signal
 import subprocess
 import sys
 import time
@@ -99,6 +100,11 @@ def wait_until(condition: Callable[[], object], what: str, deadline_s: float = 6
     while not condition():
         assert time.monotonic() < end, f'{what}: not within {deadline_s} s'
         time.sleep(0.005)
+
+
+def take_sigint() -> None:
+    """Let Ctrl-C end the process that calls this: who runs the tests may ignore it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 def run(program: Any, arguments: Sequence[str], code: int = 0) -> Tuple[str, str]:
@@ -271,21 +277,18 @@ def scored(cases: Cases, tmp_path: Path) -> Callable[[str], Any]:
 
 @pytest.fixture
 def of_its_own_robot(cases: Cases, tmp_path: Path) -> Callable[..., Any]:
-    """Return a function that says what is said of recordings of a case with its own robot."""
+    """Return a function that says what is said of a recording of a case with its own robot."""
     from self_awareness.commands import calibrate, score, train
 
-    def of_its_own_robot(case: Union[str, Path], *recordings: str, training: int = 4,
-                         normal: int = 6) -> Any:
-        make = case if isinstance(case, Path) else cases.folder / case / 'make.py'
+    def of_its_own_robot(case: str, judged: str) -> Any:
         subprocess.run(
-            [sys.executable, '-B', str(make)], check=True, stdout=subprocess.DEVNULL,
-            env={**os.environ, 'OUT': str(tmp_path), 'LIB': str(cases.folder / 'lib')})
-        bags = [str(tmp_path / f'n{place}.bag') for place in range(1, normal + 1)]
+            [sys.executable, '-B', str(cases.folder / case / 'make.py')], check=True,
+            stdout=subprocess.DEVNULL, env={**os.environ, 'OUT': str(tmp_path)})
+        bags = [str(tmp_path / f'n{place}.bag') for place in range(1, 7)]
         model, said = str(tmp_path / 'm'), tmp_path / 'said.json'
-        assert train.main([*bags[:training], '-o', model]) == 0
-        assert calibrate.main(['--model', model, '--normal', *bags[training:],
-                               '-o', model]) == 0
-        assert score.main([*(str(tmp_path / each) for each in recordings), '--model', model,
-                           '--json', str(said)]) == 0
-        return json.loads(said.read_text('utf-8'))['recordings']
+        assert train.main([*bags[:4], '-o', model]) == 0
+        assert calibrate.main(['--model', model, '--normal', *bags[4:], '-o', model]) == 0
+        assert score.main([str(tmp_path / judged), '--model', model, '--json', str(said)]) == 0
+        recording, = json.loads(said.read_text('utf-8'))['recordings']
+        return recording
     return of_its_own_robot

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, Dict, List, Tuple
+from typing import Any, List, Tuple
 
 import pytest
 from conftest import error_of, printed_by, trained
@@ -37,10 +37,6 @@ def test_what_was_heard_after_it_was_accepted_is_learned(
     learned = [entries[place] for place in places]
     assert accepted_file.learned(entries, model(*heard)) == (
         learned, [each for each in entries if each not in learned])
-
-
-def test_what_was_never_heard_is_not_learned() -> None:
-    assert accepted_file.learned([Acceptance('/driver', at=0)], model(0, 0))[0] == []
 
 
 def test_who_does_not_subscribe_is_learned_once_it_is_not_expected() -> None:
@@ -86,21 +82,6 @@ def test_it_is_kept_beside_the_model(entries: List[Acceptance], tmp_path) -> Non
     assert accepted_file.beside(path) == []
 
 
-@pytest.mark.parametrize('entry, words', [
-    (Acceptance('/a', '/t', 'slow'), '/a on /t (slow)'), (Acceptance('/a'), '/a'),
-    (Acceptance('/t', '/t', 'silent'), '/t (silent)'), (Acceptance(topic='/t*'), '/t*')])
-def test_it_is_said_as_the_monitor_says_it(entry: Acceptance, words: str) -> None:
-    assert accepted_file.in_words(entry) == words
-
-
-@pytest.mark.parametrize('wrong, told', [
-    ({'component': '/a', 'kind': 'odd'}, 'odd'), ({'kind': 'new mode'}, 'of the kind new mode'),
-    ({'kind': 'slow', 'together': ['/a', '/b']}, 'of the kind new mode')])
-def test_what_cannot_be_accepted_is_told(wrong: Dict[str, Any], told: str) -> None:
-    with pytest.raises(ValueError, match=told):
-        Acceptance(**wrong)
-
-
 def test_a_mode_is_learned_once_all_of_it_were_heard_after_it() -> None:
     entry = Acceptance(kind='new mode', at=90, by='/rqt', together=['/driver', '/base'])
     assert accepted_file.in_words(entry) == '/base /driver (new mode)'
@@ -142,13 +123,14 @@ def test_what_is_accepted_beside_the_output_is_kept_or_damaged_before_anything_i
     assert 'output.accepted' in error_of(program, command)
     assert not (tmp_path / 'output').exists()
     (tmp_path / 'output.accepted').unlink()
-    learned, nobody = heard(source), Acceptance('/nobody', at=5)
+    learned, nobody = heard(source), Acceptance('/nobody', '/nobody', 'silent', 5)
     accepted_file.keep([OF_OUTPUT, nobody, learned], output)
     said = printed_by(program, command)
     assert read_accepted(output + '.accepted') == [OF_OUTPUT, nobody, OF_SOURCE]
     assert read_accepted(source + '.accepted') == [OF_SOURCE]
     assert f'learned now, so it is judged again: {learned.component} (slow)' in said
-    for words in ('/joystick on /joy (stranger)', '/camera on /image (slow)', '/nobody'):
+    for words in ('/joystick on /joy (stranger)', '/camera on /image (slow)',
+                  '/nobody (silent)'):
         assert f'accepted, and not learned: {words}' in said
 
 

@@ -1,7 +1,9 @@
-"""What the rooms of the C++ sources may include (docs/developers.md)."""
+"""What may include or import what, in C++ and Python, and who reaches what threads share."""
 from __future__ import annotations
 
+import ast
 import re
+import subprocess
 from pathlib import Path
 from typing import Dict, List, Set
 
@@ -157,3 +159,120 @@ def test_no_part_of_the_monitor_knows_another_one() -> None:
 def test_the_monitor_is_its_wiring() -> None:
     code = (ROOT / 'src/monitor/monitor.cpp').read_text(encoding='utf-8')
     assert len(code.splitlines()) <= 250
+
+
+GUARDED = ROOT / 'include/self_awareness/ros/guarded.h'
+PROGRAM = """
+#include "self_awareness/ros/guarded.h"
+struct Counts {{ int dropped = 0; }};
+void use(self_awareness::ros1::Guarded<Counts>& counts,
+         const self_awareness::ros1::Guarded<Counts>& constant) {{
+  (void)counts;
+  (void)constant;
+  {statement}
+}}
+"""
+
+
+@pytest.mark.parametrize('statement, error', [
+    ('++counts.lock()->dropped;', ''),
+    ('const auto held = counts.lock(); ++held->dropped; Counts& same = *held; ++same.dropped;',
+     ''),
+    ('int dropped = constant.lock()->dropped; (void)dropped;', ''),
+    ('++counts.data_.dropped;', 'is private within this context'),
+    ('++counts->dropped;', "has non-pointer type|base operand of '->'"),
+    ('Counts& counted = *counts.lock(); ++counted.dropped;', 'use of deleted function'),
+    ('auto held = counts.lock(); auto moved = std::move(held);', 'use of deleted function'),
+    ('++constant.lock()->dropped;', 'read-only object')])
+def test_only_who_holds_the_lock_reaches_the_data(tmp_path: Path, statement: str,
+                                                  error: str) -> None:
+    program = tmp_path / 'program.cpp'
+    program.write_text(PROGRAM.format(statement=statement))
+    compiled = subprocess.run(['g++', '-std=c++17', '-fsyntax-only', '-I', str(ROOT / 'include'),
+                               str(program)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True, check=False)
+    assert (compiled.returncode == 0) == (error == ''), compiled.stdout
+    assert re.search(error, compiled.stdout.replace('‘', "'").replace('’', "'")), compiled.stdout
+
+
+def test_there_is_no_other_lock() -> None:
+    locks = re.compile(r'#include <(mutex|shared_mutex)>|boost::\w*mutex'
+                       r'|pthread_(mutex|rwlock|spin)')
+    sources = [path for folder in ('src/monitor', 'src/ros', 'include/self_awareness/ros')
+               for path in sorted((ROOT / folder).rglob('*')) if path.suffix in ('.h', '.cpp')]
+    assert [str(path) for path in sources
+            if locks.search(path.read_text())] == [str(GUARDED)]
+
+
+SRC = ROOT / 'src'
+LIBRARY, ROBOT, EVALUATION = (
+    'self_awareness', 'self_awareness_follow_me', 'self_awareness_evaluation')
+PROGRAMS = 'self_awareness.commands'
+
+
+def _modules() -> Dict[str, Path]:
+    """Return all modules of the packages by their dotted names."""
+    modules = {}
+    for path in SRC.rglob('*.py'):
+        parts = path.relative_to(SRC).with_suffix('').parts
+        modules['.'.join(parts[:-1] if parts[-1] == '__init__' else parts)] = path
+    return modules
+
+
+def _package(module: str) -> str:
+    return module.partition('.')[0]
+
+
+def _imports(path: Path, modules: Dict[str, Path]) -> Set[str]:
+    """Return the modules of the packages that a module imports, wherever in it."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names} & set(modules)
+        if isinstance(node, ast.ImportFrom):
+            names = {f'{node.module}.{alias.name}' for alias in node.names}
+            found |= (names & set(modules)) or ({str(node.module)} & set(modules))
+    return found
+
+
+@pytest.fixture(scope='module')
+def graph() -> Dict[str, Set[str]]:
+    """By module, which ones it imports."""
+    modules = _modules()
+    found = {name: _imports(path, modules) for name, path in modules.items()}
+    found[LIBRARY].remove(f'{LIBRARY}.library')  # when it is first used: the others are there then
+    return found
+
+
+def _circle(graph: Dict[str, Set[str]]) -> List[str]:
+    """Return modules that import each other, and what needs them; empty: there are none."""
+    left = dict(graph)
+    while True:
+        free = [name for name, needed in left.items() if not needed & set(left)]
+        if not free:
+            return sorted(left)
+        for name in free:
+            del left[name]
+
+
+def test_all_but_the_evaluation_is_installed() -> None:
+    packages = {name for name, path in _modules().items() if path.name == '__init__.py'}
+    assert {_package(name) for name in packages} == {LIBRARY, ROBOT, EVALUATION}
+    listed = set(re.findall(r"'(self_awareness[\w.]*)'", (ROOT / 'setup.py').read_text()))
+    assert listed == {name for name in packages if _package(name) != EVALUATION}
+
+
+def test_packages_need_only_what_they_may(graph: Dict[str, Set[str]]) -> None:
+    """What is installed no evaluation; only programs the simulated robot, or other programs."""
+    for name, needed in graph.items():
+        packages, is_program = {_package(each) for each in needed}, name.startswith(PROGRAMS)
+        if _package(name) != EVALUATION:
+            assert EVALUATION not in packages, name
+        if _package(name) == LIBRARY and not is_program:
+            assert ROBOT not in packages, name
+        if _package(name) != EVALUATION and not is_program:
+            assert not [module for module in needed if module.startswith(PROGRAMS)], name
+
+
+def test_no_module_needs_one_that_needs_it(graph: Dict[str, Set[str]]) -> None:
+    assert _circle(graph) == []

@@ -95,9 +95,3 @@ def test_an_error_names_the_file_and_the_key(read: Callable[[str], EncodingRules
                                              key: str) -> None:
     with pytest.raises(ValueError, match=f'e.yaml: {key}: '):
         read(text)
-
-
-@pytest.mark.parametrize('text', ['[a', '- a\n', 'text', '"\\x"', 'a: !!python/name:os.system'])
-def test_what_is_no_mapping_is_refused(read: Callable[[str], EncodingRules], text: str) -> None:
-    with pytest.raises(ValueError, match='e.yaml: '):
-        read(text)

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Callable, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 import pytest
-from conftest import jittery_robot, learned, wait_until, write_bag
+from conftest import jittery_robot, learned, take_sigint, wait_until, write_bag
 
 from self_awareness import (EncodingRules, EventLogWriter, ResultBag, TrainedModel, read_events,
                             summarise_bag)
@@ -214,8 +214,7 @@ def training(bags: List[str], output: Path) -> subprocess.Popen:
         [sys.executable, str(_TRAIN), *bags, '--jobs', '2', '--detector', 'both', '-o',
          str(output)], start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
         text=True,
-        # Who runs the tests in the background may ignore Ctrl-C.
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        preexec_fn=take_sigint)
     wait_until(lambda: len(children(process.pid)) == 2 or process.poll() is not None,
                'two processes work')
     return process
@@ -279,5 +278,5 @@ sys.exit(cli.run(argparse.ArgumentParser(), work, None))
 """
     done = subprocess.run(
         [sys.executable, '-c', program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        check=False, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+        check=False, preexec_fn=take_sigint)
     assert (done.returncode, done.stdout, done.stderr) == (130, '', '')

@@ -11,6 +11,7 @@ from unittest import mock
 from xml.etree import ElementTree
 
 import pytest
+from conftest import take_sigint
 from roslaunch import arg_dump, node_args
 from roslaunch.config import ROSLaunchConfig
 from roslaunch.xmlloader import XmlLoader
@@ -87,15 +88,11 @@ def test_one_or_many_are_the_same_and_what_is_neither_is_told(what: str, node: s
         _loaded('record.launch', f'what:={what}')
 
 
-def _take_sigint() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # who runs the tests may ignore it
-
-
 @contextmanager
 def _prefixed(*command: str, **variables: str) -> Iterator[subprocess.Popen[str]]:
     with subprocess.Popen(('bash', ROOT / 'launch' / 'until_refused.sh', *command),
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          start_new_session=True, preexec_fn=_take_sigint,
+                          start_new_session=True, preexec_fn=take_sigint,
                           env={**os.environ, **variables}) as node:
         try:
             yield node

@@ -5,12 +5,15 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from typing import Any, Callable, Tuple
 
 import pytest
 from conftest import wait_until
+from tqdm import tqdm
 
+from self_awareness import progress
 from self_awareness.workers import InProcess, Processes, Workers
 
 PROGRAM = """
@@ -80,15 +83,6 @@ def test_work_begins_only_a_little_ahead(tmp_path: Path) -> None:
 def test_batches_are_few_and_not_long(tasks: int, processes: int, batches: int) -> None:
     assert Processes(processes).batches(tasks) == batches
     assert InProcess().batches(tasks) == tasks
-
-
-def test_a_process_that_is_killed_again_and_again_is_told() -> None:
-    with pytest.raises(ValueError, match='^0: a process .* was killed'):
-        list(Processes(2).map(die, None, range(4), 'test'))
-
-
-def die(_: None, __: int) -> None:
-    os.kill(os.getpid(), signal.SIGKILL)
 
 
 def test_a_process_that_is_killed_is_replaced(tmp_path: Path) -> None:
@@ -169,3 +163,25 @@ def test_no_process_outlives_the_program(how: signal.Signals, tmp_path: Path) ->
         os.kill(process.pid, how)
         process.wait()
     wait_until(lambda: not any(map(alive, begun(tmp_path))), 'the processes end')
+
+
+def test_waiting_ends_where_no_bar_is_shown() -> None:
+    passed = list(progress.waiting(0.25, 'a moment'))
+    assert passed[-1] == 0.25
+    assert passed == sorted(passed)
+    assert len(passed) <= 3
+
+
+def test_who_is_killed_stops_no_other_process() -> None:
+    pid = os.fork()
+    if pid == 0:
+        tqdm.get_lock().acquire()
+        os.kill(os.getpid(), signal.SIGKILL)
+    os.waitpid(pid, 0)
+    begun = threading.Event()
+
+    def show() -> None:
+        with progress.items(1, 'work'):
+            begun.set()
+    threading.Thread(target=show, daemon=True).start()
+    assert begun.wait(10.0)

@@ -57,22 +57,6 @@ def known(component: str, found_s: float) -> Coverage:
     return cast(Coverage, SimpleNamespace(component=component, death_found_after=found_s))
 
 
-def test_the_longest_silence_of_every_type_is_known() -> None:
-    silences = heads_and_tails.silences(recorded('a.bag', (40.0, 46.0), (60.0, 62.0)))
-    assert silences[GPS].begin_s == pytest.approx(39.8, abs=1e-3)
-    assert silences[GPS].length_s == pytest.approx(6.2, abs=1e-3)
-    assert silences[SCAN].length_s == pytest.approx(0.2, abs=1e-3)
-
-
-def test_what_a_recording_cuts_off_is_no_hole() -> None:
-    silences = heads_and_tails.silences(recorded('a.bag', (0.0, 20.0), (60.0, 200.0)))
-    assert silences[GPS].length_s == pytest.approx(0.2, abs=1e-3)
-
-
-def test_what_came_seldom_says_nothing() -> None:
-    assert GPS not in heads_and_tails.silences(recorded('a.bag', (5.0, 200.0)))
-
-
 def test_a_hole_is_what_one_recording_alone_shows() -> None:
     normal = [recorded(name) for name in ('a.bag', 'b.bag')]
     hole, = found(*normal, recorded('c.bag', (40.0, 46.0)))

@@ -1,21 +1,26 @@
-"""Bad input gets one line on standard error that names the file, and loses nothing."""
+"""Bad input gets one line on standard error that names the file, and hides and loses nothing."""
 from __future__ import annotations
 
+import json
 import os
+import shutil
 import signal
 import time
 from pathlib import Path
 from types import ModuleType
-from typing import List
+from typing import Callable, Dict, List
 
 import pytest
-from conftest import error_of, robot, trained
+import rosbag
+from conftest import error_of, printed_by, robot, trained, write_bag
 
-from self_awareness import encoding_file, yaml_file
-from self_awareness.commands import calibrate, convert, diff, info, merge, score, train
+from self_awareness import TrainedModel, encoding_file, recordings_in_event_log, yaml_file
+from self_awareness.commands import calibrate, convert, diff, info, learn_more, merge, score, train
 from self_awareness.training.robot_graph import RobotGraph
 
-PROGRAMS = {'train': train, 'calibrate': calibrate, 'score': score}
+PROGRAMS: Dict[str, Callable[[List[str]], int]] = {
+    'train': train.main, 'calibrate': calibrate.main, 'score': score.main, 'info': info.main,
+    'convert': convert.main, 'diff': diff.main, 'learn_more': learn_more.main}
 PIPE_S = 60
 BOMB = 'a0: &a0 [x, x, x, x, x, x, x, x, x]\n' + ''.join(
     f'a{i + 1}: &a{i + 1} [{", ".join([f"*a{i}"] * 9)}]\n' for i in range(9))
@@ -157,7 +162,7 @@ def test_values_out_of_range_are_wrong_usage(program: str, option: str, value: s
                  'score': [robot_bags[0], '--model', model_file],
                  'calibrate': ['--model', model_file, '--normal', robot_bags[1], '-o',
                                str(tmp_path / 'm')]}[program]
-    assert PROGRAMS[program].main([*arguments, f'{option}={value}']) == 2
+    assert PROGRAMS[program]([*arguments, f'{option}={value}']) == 2
     error, = capsys.readouterr().err.splitlines()
     assert error.startswith(f'{program}: error: ') and option in error
     assert error.endswith(f' ({program} --help says more)')
@@ -169,14 +174,6 @@ def test_a_range_or_horizon_that_does_not_fit_is_told(robot_bags, tmp_path: Path
     for options, told in ((['--start', '5', '--end', '4'], 'start < end'),
                           (['--horizon', '0.015'], 'multiple')):
         assert told in error_of(train, [robot_bags[0], *options, *output])
-
-
-def test_ctrl_c_ends_it(monkeypatch, model_file: str) -> None:
-    def interrupted(_: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(info.verdict, 'lines', interrupted)
-    assert info.main([model_file]) == 130
 
 
 @pytest.mark.parametrize('name, told', [
@@ -232,3 +229,120 @@ def test_the_largest_yaml_file_is_read_in_seconds_and_a_key_that_is_there_twice_
     with pytest.raises(ValueError, match="'k59999' is there twice"):
         yaml_file.load(str(path))
     assert time.process_time() - begin < 15.0  # not by comparing each with each
+
+
+BAD = {'active.bag.active': 'is still being written, or its recorder was killed; in that case '
+                            'mend it with: rosbag reindex',
+       'cut.bag': 'rosbag reindex',
+       'foreign.bag': 'not a bag',
+       'nothing.bag': 'not a bag',
+       'empty.bag': 'the bag is empty: it holds no messages; leave it out',
+       'other.mcap': 'not a bag of ROS 1: MCAP',
+       'old.orig.bag': 'before rosbag reindex; remove it',
+       'packed.bag.gz': 'compressed by gzip; unpack it first',
+       'ros2.db3': 'a recording of ROS 2 (SQLite)'}
+
+
+@pytest.fixture
+def day(tmp_path: Path) -> Path:
+    """A folder with two good recordings, and bad ones between them."""
+    made = tmp_path / 'day'
+    made.mkdir()
+    whole = Path(write_bag(made / 'zz.bag', robot(40000.0, 100.0)))
+    write_bag(made / 'a.bag', robot(30000.0, 100.0))
+    unindexed = rosbag.Bag(str(made / 'active.bag.active'), 'w')
+    unindexed._file.close()
+    (made / 'cut.bag').write_bytes(whole.read_bytes()[:9000])
+    with rosbag.Bag(str(made / 'empty.bag'), 'w'):
+        pass
+    (made / 'foreign.bag').write_text('something else\n' * 100)
+    (made / 'nothing.bag').touch()
+    (made / 'other.mcap').write_bytes(b'\x89MCAP0\r\n')
+    write_bag(made / 'old.bag', robot(50000.0, 100.0))
+    (made / 'old.orig.bag').write_bytes(whole.read_bytes()[:9000])
+    (made / 'packed.bag.gz').write_bytes(b'\x1f\x8b\x08')
+    (made / 'ros2.db3').write_bytes(b'SQLite format 3\0')
+    (made / 'notes.txt').write_text('monday\n')
+    return made
+
+
+def arguments(program: str, named: str, model: str, output: str) -> List[str]:
+    return {'train': [named, '-o', output],
+            'calibrate': ['--model', model, '--normal', named, '-o', output],
+            'score': [named, '--model', model, '--json', output],
+            'info': [named],
+            'convert': [named, '-o', output],
+            'diff': [model, named],
+            'learn_more': [named, '--model', model, '--start-up', '0', '-o', output]}[program]
+
+
+@pytest.mark.parametrize('program', sorted(PROGRAMS))
+def test_all_bad_ones_are_named_at_once_and_are_skipped_if_asked(
+        program: str, day: Path, evidence_model: str, tmp_path: Path, capfd) -> None:
+    output = tmp_path / 'out'
+    named = arguments(program, str(day), evidence_model, str(output))
+
+    def check(kind: str) -> str:
+        captured = capfd.readouterr()
+        assert captured.err.count(f'{program}: {kind}: ') == len(BAD), captured.err
+        for name, told in BAD.items():
+            assert len([line for line in captured.err.splitlines()
+                        if line.startswith(f'{program}: {kind}: {day}/{name}: ')
+                        and told in line]) == 1, captured.err
+        return captured.out
+
+    assert PROGRAMS[program](named) == 1
+    said = check('error')
+    # What says something of each recording by itself goes on; what needs all of them does nothing.
+    assert output.exists() == (program == 'score')
+    if program in ('score', 'info'):
+        assert f'{day}/a.bag: ' in said and f'{day}/zz.bag: ' in said
+    assert PROGRAMS[program]([*named, '--skip-bad']) == 0
+    check('warning: skipped')
+    if program == 'train':
+        assert [each.bag for each in TrainedModel.load(str(output)).recordings] == [
+            'a.bag', 'old.bag', 'zz.bag']
+    elif program == 'convert':
+        assert recordings_in_event_log(str(output)) == 3
+    elif program == 'score':
+        assert len(json.loads(output.read_text(encoding='utf-8'))['skipped']) == len(BAD)
+
+
+def test_a_damage_that_is_found_late_hides_nothing(evidence_model: str, tmp_path: Path,
+                                                   capsys) -> None:
+    """In the middle of a file, where nobody looks before the work begins."""
+    day = tmp_path / 'day'
+    day.mkdir()
+    for name in ('a.bag', 'b.bag', 'c.bag'):
+        write_bag(day / name, robot(30000.0 + 1000 * ord(name[0]), 100.0))
+    content = bytearray((day / 'b.bag').read_bytes())
+    middle = len(content) // 2
+    content[middle:middle + 2000] = bytes(2000)
+    (day / 'b.bag').write_bytes(content)
+    for program in sorted(PROGRAMS):
+        output = tmp_path / program
+        named = arguments(program, str(day), evidence_model, str(output))
+        assert PROGRAMS[program](named) == 1
+        captured = capsys.readouterr()
+        assert captured.err.count(f'{day}/b.bag: ') == 1, captured.err
+        if program in ('score', 'info'):
+            assert f'{day}/c.bag: ' in captured.out
+        assert PROGRAMS[program]([*named, '--skip-bad']) == 0
+        assert f'{program}: warning: skipped: {day}/b.bag: ' in capsys.readouterr().err
+
+
+def test_where_none_is_left_nothing_is_done(day: Path, model_file: str, tmp_path: Path,
+                                            capsys) -> None:
+    for good in ('a.bag', 'old.bag', 'old.orig.bag', 'zz.bag'):
+        os.remove(day / good)
+    for program in sorted(PROGRAMS):
+        output = tmp_path / program
+        assert PROGRAMS[program]([*arguments(program, str(day), model_file, str(output)),
+                                  *([] if program == 'info' else ['--skip-bad'])]) == 1
+        assert capsys.readouterr().err.count(f'{program}: error: {day}/') == len(BAD) - 1
+        assert not output.exists()
+
+
+def test_a_recorder_that_was_killed_is_read_once_it_is_mended(day: Path, tmp_path: Path) -> None:
+    shutil.copy(day / 'a.bag', tmp_path / 'a.bag.active')  # rosbag reindex leaves the name
+    assert f'{tmp_path}/a.bag.active: 100.0 s' in printed_by(info, [str(tmp_path)])

@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Callable, Tuple
 
 import pytest
-import rosbag
 from conftest import error_of, learned, printed_by, robot, trained
 
-from self_awareness import TrainedModel, summarise_bag
-from self_awareness.commands import calibrate, convert, info, score, simulate, train
+from self_awareness import TrainedModel
+from self_awareness.commands import calibrate, convert, info, score, train
 from self_awareness.parts import BagPart, expand
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
@@ -77,16 +76,6 @@ def test_a_robot_without_senders_stays_without(make_bag: Callable[..., str], tmp
     assert said.count('no bag names the senders of its messages: sources are not told apart') == 2
 
 
-def test_a_day_of_the_simulated_robot_stays_small(tmp_path: Path) -> None:
-    bag, log = str(tmp_path / 'robot.bag'), str(tmp_path / 'log.bag')
-    assert simulate.main(['--output', bag, '--duration', '600', '--seed', '5']) == 0
-    assert convert.main([bag, '-o', log]) == 0
-    events = summarise_bag(log, 0).messages
-    assert events > 0.95 * summarise_bag(bag).messages
-    assert os.path.getsize(log) / events < 5.5
-    assert os.path.getsize(log) * (86400 / 600) < 80e6
-
-
 def test_info_says_what_is_in_a_log(log: str) -> None:
     assert printed_by(info, [log]) == 'event log    2 recordings, 4 min, nodes: 3\n'
     said = printed_by(info, [log, '--details'])
@@ -121,21 +110,3 @@ def test_what_is_no_bag_and_what_is_no_log_is_told(robot_bags: Bags, log: str,
     error = error_of(train, [f'{robot_bags[0]}#1', '-o', str(tmp_path / 'm')])
     assert 'no event log' in error and robot_bags[0] in error
     assert os.listdir(tmp_path) == []
-
-
-def test_the_same_recording_as_bag_and_log_is_refused(long_bags: Bags, log: str,
-                                                      tmp_path: Path) -> None:
-    error = error_of(train, [long_bags[1], log, '-o', str(tmp_path / 'm')])
-    assert 'the same recording' in error
-    error = error_of(train, [log, f'{log}#2@3', '-o', str(tmp_path / 'm')])
-    assert f'{log}#2@3: the same recording as {log}#2' in error
-
-
-def test_a_damaged_log_is_named(log: str, tmp_path: Path) -> None:
-    cut = tmp_path / 'cut.bag'
-    model = str(tmp_path / 'm')
-    with rosbag.Bag(log) as source, rosbag.Bag(str(cut), 'w') as copy:
-        for topic, message, stamp in source.read_messages(topics=['/event_log/events']):
-            copy.write(topic, message, stamp)
-    assert f'{cut}: the event log has no start' in error_of(train, [str(cut), '-o', model])
-    assert not os.path.exists(model)

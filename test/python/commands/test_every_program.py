@@ -84,9 +84,3 @@ def torn_lines(lines: List[str]) -> List[str]:
     return [line for line, after in zip(lines, lines[1:])
             if line[:1].isalnum() and after[:1].isalnum() and line[-1] not in '.:'
             and len(line) + 1 + len(after.split()[0]) <= longest - 8]
-
-
-def test_a_torn_line_is_seen() -> None:
-    prose = ['usage: top [-h]', '', 'Keys: q quits. All that fits', 'into a line is in it.',
-             'Long lines end where the next word would be too long for them.']
-    assert torn_lines(prose) == [prose[2]]

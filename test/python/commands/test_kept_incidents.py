@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 from typing import Any, Callable, List
 
@@ -96,21 +95,6 @@ def test_what_was_open_when_its_monitor_ended_is_unknown_since(tmp_path: Path) -
     assert 'open: 0' in said and '  unknown since 2026-09-21 14:13:40 UTC  /player' in said
     assert 'unknown since  2026-09-21 14:13:40' in printed_by(incidents, ['--file', file, '7'])
     assert json.loads(printed_by(incidents, ['--file', file, '--json']))[0]['unknown'] is True
-
-
-def test_the_incidents_of_an_older_monitor_are_known(tmp_path: Path) -> None:
-    text = re.sub(r'\nbool unknown .*', '', Incidents._full_text)
-    assert text != Incidents._full_text
-    former = genpy.dynamic.generate_dynamic('self_awareness/Incidents', text)
-    kept = former['self_awareness/Incidents']()
-    one = former['self_awareness/Incident'](id=7, last=7, level=SelfAwareness.ERROR, kind='silent',
-                                            component='/player', alarms=3)
-    kept.incidents = [one]
-    path = tmp_path / 'w.incidents'
-    with rosbag.Bag(str(path), 'w') as bag:
-        bag.write('/incidents', kept, genpy.Time(1))
-    known, = json.loads(printed_by(incidents, ['--file', str(path), '--json']))
-    assert (known['id'], known['over'], known['unknown'], known['alarms']) == (7, False, False, 3)
 
 
 def test_all_monitors_are_found_in_ros_home(tmp_path: Path,

@@ -95,21 +95,6 @@ def test_what_is_written_is_of_its_kind_and_of_no_other(written: Dict[str, bytes
                 if kind.is_one(str(tmp_path / 'f'))} == {KINDS[way]}, way
 
 
-@pytest.mark.parametrize('way', ['train', 'convert', 'score --csv', 'score --result-bag'])
-def test_a_file_of_the_same_kind_or_an_empty_one_is_replaced_through_links(
-        way: str, files: Dict[str, str], written: Dict[str, bytes], tmp_path: Path) -> None:
-    program, arguments, path = line_of(way, tmp_path / 'out', files)
-    target = tmp_path / 'target'
-    path.symlink_to(target)
-    for before in (b'', written[way]):
-        target.write_bytes(before)
-        inode = target.stat().st_ino
-        assert program.main(arguments) == 0
-        assert path.is_symlink() and target.stat().st_ino != inode
-        assert target.stat().st_size > 0
-    assert sorted(os.listdir(tmp_path)) == sorted([path.name, 'target'])
-
-
 def test_what_cannot_be_written_is_told_before_the_work(tmp_path: Path, monkeypatch) -> None:
     def error(*paths: Path) -> str:
         with pytest.raises(ValueError) as caught:
@@ -199,3 +184,18 @@ def test_a_full_standard_output_is_told(files: Dict[str, str]) -> None:
                              env={**os.environ, 'PYTHONUNBUFFERED': ''})
     assert run.returncode == 1
     assert run.stderr == 'info: error: standard output: No space left on device\n'
+
+
+@pytest.mark.parametrize('way', ['train', 'convert', 'score --csv', 'score --result-bag'])
+def test_a_file_of_the_same_kind_or_an_empty_one_is_replaced_through_links(
+        way: str, files: Dict[str, str], written: Dict[str, bytes], tmp_path: Path) -> None:
+    program, arguments, path = line_of(way, tmp_path / 'out', files)
+    target = tmp_path / 'target'
+    path.symlink_to(target)
+    for before in (b'', written[way]):
+        target.write_bytes(before)
+        inode = target.stat().st_ino
+        assert program.main(arguments) == 0
+        assert path.is_symlink() and target.stat().st_ino != inode
+        assert target.stat().st_size > 0
+    assert sorted(os.listdir(tmp_path)) == sorted([path.name, 'target'])

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Iterator, Sequence
 
 import pytest
+from conftest import take_sigint
 
 NOBODY = 'http://127.0.0.1:1/'
 LONG_S = 60.0
@@ -20,7 +21,7 @@ LONG_S = 60.0
 def _started(program: str, *words: str) -> Iterator[subprocess.Popen[str]]:
     code = f'import sys; from self_awareness.commands import {program}; sys.exit({program}.main())'
     with subprocess.Popen((sys.executable, '-c', code, *words), text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, preexec_fn=_take_sigint,
+                          stderr=subprocess.STDOUT, preexec_fn=take_sigint,
                           env={**os.environ, 'ROS_MASTER_URI': NOBODY,
                                'PYTHONUNBUFFERED': '1'}) as process:
         watchdog = threading.Timer(LONG_S, process.kill)
@@ -30,10 +31,6 @@ def _started(program: str, *words: str) -> Iterator[subprocess.Popen[str]]:
         finally:
             watchdog.cancel()
             process.kill()
-
-
-def _take_sigint() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # who runs the tests may ignore it
 
 
 # 0: rospy has not ended its threads in time, and so the process is ended (ros_node.py).

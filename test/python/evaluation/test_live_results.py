@@ -14,8 +14,7 @@ from self_awareness_evaluation.live import command
 from self_awareness_evaluation.live.rows import (AT_RANDOM, BACK_WITHIN_S, DELAY_S, ERROR, HANGS,
                                                  MUST_BE_FOUND_S, RESTARTED, WARN, Incident, Row,
                                                  Status, measure, not_mended, of_faults,
-                                                 of_healthy, of_recovery, of_soak,
-                                                 slope_mb_per_hour)
+                                                 of_healthy, of_recovery, of_soak)
 from self_awareness_evaluation.pages import RESULTS
 from self_awareness_evaluation.rows import AFTERMATH_S, load
 
@@ -64,13 +63,6 @@ def test_a_soak_says_what_is_wrong() -> None:
              'memory grows by 1.50 MB')):
         failure, = of_soak(bad)[1]
         assert word in failure
-
-
-def test_the_slope_is_that_after_five_minutes() -> None:
-    rows = [replace(normal(at_s), memory_mb=50.0 + 3.0 * at_s / 3600.0 + max(0, 200 - at_s) / 9.0)
-            for at_s in range(0, 1800, 100)]
-    assert slope_mb_per_hour(rows) == pytest.approx(3.0)
-    assert slope_mb_per_hour(rows[:5]) is None and slope_mb_per_hour([]) is None
 
 
 HANG = Row('hang:slam', 'slam', round=AT_RANDOM, onset=100.0, lasted_s=10.0)
@@ -222,7 +214,4 @@ def test_alarms_and_suspicions_of_normal_operation(levels: List[Tuple[float, int
     row = measure(QUIET, said(*levels))
     assert (row.alarms, row.suspicions, row.said) == (alarms, suspicions, told)
     assert (row.lasted_s, row.load) == (pytest.approx(10.0), 1.5)
-
-
-def test_time_in_which_the_monitor_settles_is_not_judged() -> None:
     assert measure(QUIET, said(settled_after_s=4.0)).lasted_s == pytest.approx(6.0)

@@ -10,10 +10,9 @@ import yaml
 from simulated_runs import MS, SCENARIO, S, output, robot
 
 from self_awareness.yaml_section import SectionError
-from self_awareness_follow_me.component import Component, Message, Publish, Wake, Work
+from self_awareness_follow_me.component import Component, Message, Publish, Work
 from self_awareness_follow_me.component_spec import (ComponentSpec, Duration, Hypothesis, Need,
                                                      Task)
-from self_awareness_follow_me.effects import ClockDrift, Starvation
 from self_awareness_follow_me.scenario import load_scenario
 
 
@@ -37,30 +36,19 @@ def _set(key: str, value: Any) -> Callable[[Any], None]:
     (['components', 1], _remove('name'), r'components\[1\]\.name: missing'),
     (['components', 1], _set('name', 'Player'), r'components\[1\]\.name: expected a text'),
     (['components', 1], _set('name', 'slam'), "components: the name 'slam' is given twice"),
-    (['components', 1], _set('host', 'c'), r'components\[1\]\.host: expected a text'),
     (['components', 1, 'tasks', 0], _remove('every'), r'tasks\[0\]\.upon: missing; a task needs'),
-    (['components', 1, 'tasks', 0], _set('every', -1), r'every: expected a finite number of at'),
     (['components', 1, 'tasks', 0], _set('jitter', 0.09), r'jitter: expected .* from 0 to 0\.025'),
-    (['components', 1, 'tasks', 0], _set('evry', 1), r'tasks\[0\]\.evry: unknown key'),
     (['components', 1, 'tasks', 0], _set('upon', 'scn'), "'player' listens to 'scn', which no"),
     (['components', 1, 'tasks', 0], _set('needs', [{'topic': 'odom'}]),
      r'needs\[0\]\.within: give exactly one'),
-    (['components', 1, 'tasks', 0, 'publish', 0], _set('type', 'Scan'), r'publish\[0\]\.type'),
     (['components', 1, 'tasks', 0, 'publish', 0], _set('topic', '/scan'), r'publish\[0\]\.topic'),
     (['components', 1, 'tasks', 0, 'publish', 0], _set('topic', 'odom'),
      "'odom' is published by both 'motors' and 'player'"),
-    (['components', 1, 'tasks', 0, 'publish', 0, 'takes'], _set('rare', 2), r'takes\.rare: exp'),
     (['components', 2, 'tasks', 0, 'publish', 1], _set('topic', 'pose_hypotheses'),
      "'pose_hypotheses' has two types"),
     (['components', 7, 'tasks', 0, 'hypothesis'], _set('update', 0), 'insert: .*different values'),
     (['faults', 'cc1'], _set('crash', 'plaer'), r"faults\.cc1\.crash: no component 'plaer'"),
-    (['faults', 'ac'], _set('periods', [0]), r'faults\.ac\.periods: expected a finite number'),
-    (['faults', 'lat'], _set('components', ['plaer']), r"lat\.components: no component 'plaer'"),
-    (['faults', 'lat'], _set('delay', 0), r'lat\.delay: expected a finite number of at least'),
-    (['faults', 'lossy'], _set('share', 1.5), r'lossy\.share: expected a finite number'),
     (['faults', 'extra'], _set('name', 'slam'), r"extra\.name: 'slam' is a component"),
-    (['faults', 'extra', 'tasks', 0, 'publish', 0], _set('topic', 'joy'),
-     "no component publishes 'joy'"),
     (['faults', 'extra', 'tasks', 0], _set('upon', 'joy'), "no component publishes 'joy'"),
     (['faults', 'order'], _set('component', 'player'), "'player' never publishes two"),
     (['faults', 'unknown', 'task', 'publish', 0], _set('type', 'std_msgs/String'),
@@ -68,7 +56,6 @@ def _set(key: str, value: Any) -> Callable[[Any], None]:
     (['faults', 'unknown'], _set('component', 'slam'),
      "'slam' does not publish 'person_hypotheses' otherwise"),
     (['live'], _set('cpu_share', 0), r'live\.cpu_share: expected a finite number from'),
-    (['encoding'], _set('type_fields', ['status']), r'encoding\.type_fields: expected texts'),
 ])
 def test_error_names_file_and_key(tmp_path: Path, where: List[Any],
                                   change: Callable[[Any], None], message: str) -> None:
@@ -82,44 +69,8 @@ def test_error_names_file_and_key(tmp_path: Path, where: List[Any],
         load_scenario(path)
 
 
-@pytest.mark.parametrize('text, message', [
-    ('', 'the file: expected keys'),
-    ('components: [', 'not YAML'),
-])
-def test_no_mapping(tmp_path: Path, text: str, message: str) -> None:
-    path = tmp_path / 'robot.yaml'
-    path.write_text(text, encoding='utf-8')
-    with pytest.raises(SectionError, match=rf'robot\.yaml: {message}'):
-        load_scenario(path)
-
-
-def _component(*tasks: Task, clock: Callable[[int], int] = lambda now: now) -> Component:
-    return Component(ComponentSpec('it', 'a', tasks), random.Random(1), clock)
-
-
-def test_timer_keeps_its_grid_when_late_and_leaves_out_missed_ticks() -> None:
-    component = _component(Task((output('out'),), every=Duration(0.1)))
-    first, = component.start(5 * S)
-    assert isinstance(first, Wake) and 5 * S <= first.at < 5 * S + 100 * MS
-    again, work = component.wake(first.at + 30 * MS, first.timer)
-    assert again == Wake(first.at + 100 * MS, first.timer)
-    assert work == Work(10 * MS, 0)
-    component.work_done(first.at + 40 * MS)
-    later, _ = component.wake(first.at + 350 * MS, first.timer)
-    assert later == Wake(first.at + 400 * MS, first.timer)
-
-
-def test_stamps_pass_through_and_timers_read_the_clock_of_the_host() -> None:
-    component = _component(Task((output('relayed'),), upon='in'),
-                           Task((output('own'),), every=Duration(0.1)),
-                           clock=lambda now: now - 3 * S)
-    component.start(0)
-    assert component.receive(10 * S, Message('in', 7 * S)) == [Work(10 * MS, 0)]
-    assert component.work_done(10 * S + MS) == [
-        Publish(Message('relayed', 7 * S, content=10 * S + MS))]
-    component.wake(11 * S, 1)
-    assert component.work_done(11 * S + MS) == [
-        Publish(Message('own', 8 * S, content=11 * S + MS))]
+def _component(*tasks: Task) -> Component:
+    return Component(ComponentSpec('it', 'a', tasks), random.Random(1))
 
 
 def test_busy_worker_takes_the_newest_message_next() -> None:
@@ -129,13 +80,6 @@ def test_busy_worker_takes_the_newest_message_next() -> None:
     assert component.receive(2, Message('in', 3)) == []
     assert component.work_done(3) == [Publish(Message('out', 1, content=3)), Work(10 * MS, 0)]
     assert component.work_done(4) == [Publish(Message('out', 3, content=4))]
-
-
-def test_every_nth_message() -> None:
-    component = _component(Task((output('out', 0.0),), upon='in', each=3))
-    worked = [bool(component.receive(i, Message('in', i))) and bool(component.work_done(i))
-              for i in range(9)]
-    assert worked == [False, False, True] * 3
 
 
 @pytest.mark.parametrize('need, at, holds', [
@@ -151,14 +95,6 @@ def test_needs(need: Need, at: int, holds: bool) -> None:
     component = _component(Task((output('out'),), upon='in', needs=(need,)))
     component.receive(10 * S, Message('other', 9 * S, 'yes'))
     assert bool(component.receive(at, Message('in', 9 * S - 500 * MS))) is holds
-
-
-def test_values_are_chosen_repeated_and_fixed() -> None:
-    component = _component(Task((output('one', value_of='in'), output('two', values=(True,)),
-                                 output('three', values=('a', 'b'))), upon='in'))
-    component.receive(0, Message('in', 0, 'follow me'))
-    said = [component.work_done(i)[0].message.value for i in range(3)]
-    assert said[:2] == ['follow me', True] and said[2] in ('a', 'b')
 
 
 def test_hypothesis_is_inserted_updated_and_deleted() -> None:
@@ -181,16 +117,3 @@ def test_hypothesis_is_inserted_updated_and_deleted() -> None:
     assert [track(t * 200 * MS) for t in range(5)] == [None, None, 0, 1, 1]
     assert check(1800 * MS) is None and check(1801 * MS) == 9 and check(3 * S) is None
     assert [track(4 * S + t * 200 * MS) for t in range(4)] == [None, None, 0, 1]
-
-
-def test_clock_is_right_before_the_onset_and_drifts_smoothly_after() -> None:
-    drift = ClockDrift('b', -0.05, 10.0, 0.3, (7.0, 11.0))
-    offsets = [drift.offset_ns(t * 10 * MS) for t in range(-100, 5000)]
-    assert set(offsets[:101]) == {0}
-    assert max(abs(b - a) for a, b in zip(offsets, offsets[1:])) < 5 * MS
-    assert min(offsets) < -200 * MS
-
-
-def test_starvation_grows_over_the_ramp_and_stays() -> None:
-    starvation = Starvation(ramp=20.0, slowdown=8.0, workers_per_core=1)
-    assert [starvation.factor(t * S) for t in (-5, 0, 10, 20, 50)] == [1.0, 1.0, 4.5, 8.0, 8.0]

@@ -124,16 +124,6 @@ def test_who_is_at_its_limit_is_not_heard_as_ever(level: int, share: float, stat
     assert row(of) == (style, f'/a 10.0/12.5 0.1 s {percent} 0.4 s {shown}')
 
 
-@pytest.mark.parametrize('sort, values', [
-    ('level', {'share': 2.3}), ('age', {'state': 'not heard yet', 'age': -1.0})])
-def test_who_is_at_its_limit_or_was_never_heard_comes_first(sort: str,
-                                                            values: Dict[str, Any]) -> None:
-    of = Said('/watch')
-    of.on_components(components(of_component('/gone'), of_component('/gone')))
-    of.on_components(components(of_component('/a', age=9.0), of_component('/b', **values)))
-    assert [each.name for each in of.components(sort, '')] == ['/b', '/a']
-
-
 def test_it_counts_who_is_heard_so_far_until_all_are() -> None:
     first, tool = of_component('/a'), in_graph('/tool', 'it publishes nothing')
     late = of_component('/late', state='not heard yet', age=-1.0)

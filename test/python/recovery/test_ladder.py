@@ -63,19 +63,6 @@ def test_who_comes_again_within_the_delay_is_left_alone() -> None:
         (begin + DELAY, 'stop /player')]
 
 
-def test_nothing_else_is_done_while_a_step_is_done() -> None:
-    tested = ladder(PLAYER, SLAM, delay=0.0)
-    both = [fault(), fault('/slam', incident=2)]
-    assert tested.advance(0.0, both) == Order(PLAYER, 1, PLAYER.steps[0], both[0])
-    assert all(tested.advance(now, both) is None for now in (1.0, 50.0, 100.0))
-    tested.done(100.0)
-    after = tested.advance(100.0, both)
-    assert after is not None and after.rule is SLAM
-    tested.done(101.0)
-    again = tested.advance(100.0 + WAIT, both)
-    assert again is not None and (again.rule, again.number) == (PLAYER, 2), 'from the end of it'
-
-
 @pytest.mark.parametrize('gone, step', [(SHORTEST_HEALING_S - TICK, 'stop /player'),
                                         (SHORTEST_HEALING_S + TICK, 'call /player/reset')])
 def test_healed_is_what_is_gone_for_long_enough(gone: float, step: str) -> None:
@@ -83,18 +70,6 @@ def test_healed_is_what_is_gone_for_long_enough(gone: float, step: str) -> None:
     assert climb(tested, 0.0, 1.0) == [(0.0, 'call /player/reset')]
     assert climb(tested, 1.0, 1.0 + gone, ()) == []
     assert [what for _, what in climb(tested, 1.0 + gone, 1.0 + gone + WAIT)][:1] == [step]
-
-
-def test_what_comes_and_goes_is_not_healed() -> None:
-    tested = ladder(delay=0.0, limit=3)
-    steps = []
-    for lap in range(100):
-        now = 8.0 * lap
-        steps += climb(tested, now, now + 4.0)
-        steps += climb(tested, now + 4.0, now + 8.0, ())
-    assert [what for _, what in steps] == [
-        'call /player/reset', 'stop /player', 'stop /player, /slam']
-    assert '3 actions in an hour' in tested.climbs()[0].gave_up
 
 
 def test_what_comes_back_has_to_stand_for_the_delay_again() -> None:

@@ -110,13 +110,6 @@ def test_who_holds_it_is_shown_in_short(recovery: Recovery) -> None:
     assert '\x1b' not in why and len(why) < 300
 
 
-def test_a_hold_outlives_steps_of_the_clock(recovery: Recovery, path: str) -> None:
-    now = time.monotonic_ns()
-    History([], Hold(1, now + 600 * SECOND)).save(path)
-    read(recovery)
-    assert recovery._why_held() == 'it is held'
-
-
 def test_a_hold_says_what_is_still_being_done(recovery: Recovery) -> None:
     assert 'stop' not in hold(recovery, 60.0)
     recovery._history.begin(action())

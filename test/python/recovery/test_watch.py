@@ -52,29 +52,12 @@ def faults(tested: Watch, now: float, listeners: Optional[Listeners] = None) -> 
             if each.stands]
 
 
-@pytest.mark.parametrize('blamed', ['/player', '/slam'])
-def test_the_alarm_that_stands_is_a_fault(blamed: str) -> None:
-    """Of the one that it blames; the incident may blame another one."""
-    assert watch(said=status(blamed, component=blamed)).faults(0.0) == [died(blamed)]
-
-
 @pytest.mark.parametrize('said', [
     status('/player', component=''), status('/player', level=SelfAwareness.WARN),
     status(level=SelfAwareness.OK, abnormal=False)])
 def test_others_are_none(said: Any) -> None:
     """Also while an incident of an alarm before is open, which a suspicion has opened again."""
     assert watch(said=said).faults(0.0) == []
-
-
-@pytest.mark.parametrize('then, now', [('silent', 'slow'), ('slow', 'silent')])
-def test_the_alarm_says_what_is_wrong_now(then: str, now: str) -> None:
-    """And not the incident that it has opened again; it may change while the alarm stands."""
-    said = status(suspect('/player', now), kind=now)
-    assert faults(watch([incident(kind=then)], said), 0.0) == [f'/player {now}']
-    said = status(suspect('/player', now), kind=then)
-    assert faults(watch(said=said), 0.0) == [f'/player {now}']
-    both = status(suspect('/player', now), suspect('/player', then), kind=then)
-    assert faults(watch(said=both), 0.0) == [f'/player {then}']
 
 
 def test_an_alarm_whose_incident_is_not_known_yet_has_its_own_id() -> None:
@@ -86,14 +69,6 @@ def test_an_alarm_whose_incident_is_not_known_yet_has_its_own_id() -> None:
 def test_it_stands_while_a_window_is_abnormal_and_names_the_component(said: Any) -> None:
     fault, = watch(said=said).faults(0.0) or []
     assert not fault.stands
-
-
-def test_it_does_not_stand_for_long_after_the_last_abnormal_window() -> None:
-    tested = watch()
-    for now, stands in ((0.4, True), (0.6, False)):
-        tested.on_status(now, status('/player', abnormal=False))
-        fault, = tested.faults(now) or []
-        assert fault.stands == stands
 
 
 def test_nothing_is_known_from_a_monitor_that_is_gone_or_has_not_settled() -> None:
@@ -161,15 +136,6 @@ def test_who_was_named_when_the_alarm_was_raised_or_anew_need_not_be_abnormal(si
         '/player silent']
 
 
-def test_who_is_named_now_and_then_is_no_fault() -> None:
-    tested = beside(LATER, seconds=BESIDE_S - 0.1)
-    assert faults(tested, BESIDE_S - 0.1, NOBODY_LISTENS) == ['/player silent']
-    for tenth in range(1, 8):
-        tested.on_status(BESIDE_S + tenth / 10.0, status('/player'))
-    tested.on_status(BESIDE_S + 0.8, status('/player', LATER))
-    assert faults(tested, BESIDE_S + 0.8, NOBODY_LISTENS) == ['/player silent']
-
-
 def test_victims_are_no_faults() -> None:
     tested = beside(LATER, known=incident(victims=['/camera']))
     assert faults(tested, BESIDE_S, NOBODY_LISTENS) == ['/player silent']
@@ -211,21 +177,9 @@ def test_who_does_not_come_is_dead_since_it_was_named_also_with_pauses() -> None
     assert tested.faults(2.0) == [died('/player')]
 
 
-def test_of_many_things_that_have_died_the_one_counts_that_has_for_the_longest_time() -> None:
-    tested = watch(said=at(0.0, suspect('/player', silence=0.15)))
-    tested.on_status(1.0, at(1.0, suspect('/player', silence=0.2),
-                             suspect('/player', silence=1.15)))
-    assert tested.faults(1.0) == [died('/player')]
-
-
 def test_where_a_silence_is_not_known_it_has_died_since_windows_name_it() -> None:
     tested = watch(said=at(0.0, suspect('/player')))
     tested.on_status(0.3, at(0.3, suspect('/player'), suspect('/player', silence=0.1)))
     assert tested.faults(0.3) == [died('/player')]
     tested.on_status(1.0, at(1.0, suspect('/player')))
     assert tested.faults(1.0) == [died('/player', since=1.0)], 'it was not named for 0.7 s'
-
-
-def test_who_is_slow_need_not_be_so_without_a_pause() -> None:
-    tested = watch(said=status(suspect('/player', 'slow'), kind='slow'))
-    assert tested.faults(0.0) == [Fault(7, '/player', 'slow', True)]

@@ -40,24 +40,6 @@ def found(*listed: Interval, graph: Any = (), path: str = 'x.bag') -> List[Incid
     return incidents(of, listed, 'x')
 
 
-def test_a_second_death_in_an_alarm_has_a_sentence_of_its_own() -> None:
-    graph = {('/a', '/t', '/victim')}
-    incident, = found(interval(29.0, 90.0, [
-        suspect('/a', silence=Silence(28.5, None)),
-        suspect('/victim', silence=Silence(28.5, None)),
-        suspect('/b', silence=Silence(50.0, 70.0)),
-        suspect('/late', 'answers late')]), graph=graph)
-    assert incident.headline.startswith('/a (/t) ')
-    assert incident.further == ['/b (/t) fell silent at 50.0 s, and came back at 70.0 s.']
-
-
-def test_what_stood_longest_comes_first() -> None:
-    worst, short, slight = found(
-        interval(1.0, 99.0, [suspect('/c')], SUSPICION),
-        interval(200.0, 202.0, [suspect('/a')]), interval(300.0, 330.0, [suspect('/b')]))
-    assert [worst.cause, short.cause, slight.cause] == ['/b', '/a', '/c']
-
-
 def test_a_flight_record_begins_with_the_alarm_that_it_was_written_for() -> None:
     listed = [interval(1.0, 99.0, [suspect('/older')]), interval(290.0, 300.0, [suspect('/a')]),
               interval(299.0, 300.0, [suspect('/c')], SUSPICION)]

@@ -83,19 +83,6 @@ def test_what_nobody_subscribes_to_is_known_by_name(bags: Bags, tmp_path: Path, 
     assert '/debug' not in known[0] and '/planner /new std_msgs/String: 3' in known[0]
 
 
-def test_the_running_robots_graph_is_added(bags: Bags, tmp_path: Path, monkeypatch) -> None:
-    RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam'}}).save(graph_file(bags[0]))
-    monkeypatch.setattr('self_awareness.training.robot_graph.fetch',
-                        lambda: RobotGraph({'/map': {'/slam'}}, {'/map': {'/log'}}))
-    assert trained(bags, tmp_path / 'm', '--graph').graph == {('/laser', '/scan', '/slam'),
-                                                              ('/slam', '/map', '/log')}
-
-
-def test_without_a_file_there_is_no_graph(bags: Bags, tmp_path: Path, capsys) -> None:
-    assert trained(bags, tmp_path / 'm', '--details').graph == set()
-    assert 'graph        none: ' in capsys.readouterr().out
-
-
 @pytest.mark.parametrize('text, told', [
     ('{', 'not YAML'),
     ('- /scan', 'expected keys'),
@@ -168,3 +155,11 @@ def test_what_not_every_start_is_known_to_have_is_not_expected(
     expected = trained(bags, tmp_path / 'robot.model').subscriptions
     assert MISSING not in expected
     assert bool(expected) == (names == ('1', '2', 'deaf'))
+
+
+def test_the_running_robots_graph_is_added(bags: Bags, tmp_path: Path, monkeypatch) -> None:
+    RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam'}}).save(graph_file(bags[0]))
+    monkeypatch.setattr('self_awareness.training.robot_graph.fetch',
+                        lambda: RobotGraph({'/map': {'/slam'}}, {'/map': {'/log'}}))
+    assert trained(bags, tmp_path / 'm', '--graph').graph == {('/laser', '/scan', '/slam'),
+                                                              ('/slam', '/map', '/log')}

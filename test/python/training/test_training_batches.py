@@ -139,24 +139,6 @@ def test_the_bag_without_senders_is_named_in_batches(make_bag: Callable[..., str
     assert error.startswith(f'{bags[named]}: no connection of this bag names its sender')
 
 
-def test_too_many_values_are_told_of_a_bag_or_a_batch(make_bag: Callable[..., str]) -> None:
-    bags = [make_bag(f'{i}.bag', [(i + 0.001 * k, '/a', '/b') for k in range(400)],
-                     text=f'{i}-{{}}') for i in range(4)]
-    encoding = EncodingRules.defaults()
-    encoding.type_fields = {'std_msgs/Header': 'frame_id'}
-
-    def error(batches: int) -> str:
-        with pytest.raises(ValueError, match='Header: frame_id has more than 1000 values'
-                           ) as raised:
-            many_bags.train([BagPart(bag) for bag in bags], Counting(encoding), InBatches(batches))
-        return str(raised.value)
-
-    for batches in (1, 4):
-        assert error(batches).startswith(f'{bags[2]}: ')
-    for batches in (2, 3):
-        assert error(batches).startswith(f'one of {bags[2]} to {bags[3]}: ')
-
-
 @pytest.mark.parametrize('workers, expected', [
     (InProcess(), 'xxxxx----'), (InBatches(3), 'xx-xx-x--'), (Processes(2), 'xx--xx---')])
 def test_so_many_events_are_kept_for_the_limits(bags: List[str], workers: Workers,

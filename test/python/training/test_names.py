@@ -1,17 +1,119 @@
-"""A node that draws another number for its name at every start is one node."""
+"""Names of robots' nodes: of fleets, and with numbers that differ from start to start."""
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Iterable, List, Tuple
 
 import pytest
-from conftest import Message, jittery_robot, trained, write_bag
+from conftest import Message, error_of, jittery_robot, printed_by, trained, write_bag
 
-from self_awareness import EventType, TrainedModel, load
-from self_awareness.commands import convert, merge
+from self_awareness import EncodingRules, EventType, TrainedModel, load
+from self_awareness.commands import calibrate, info, merge, score, train
+from self_awareness.parts import BagPart, by_folder
+from self_awareness.training.many_bags import Counting
 from self_awareness.training.numbered_names import Heard, find
+from self_awareness.training.robot_graph import RobotGraph, graph_file
 
-LENGTH_S = 40.0
+LENGTH_S = 60.0
+RENAME = ['--rename', '/r[0-9]+/(.*)', '/\\1']
+
+
+def of_robot(number: int, start: float) -> Iterable[Message]:
+    """What a robot sends in its namespace; the second one has a lidar besides."""
+    more = [(start + 0.7 + 0.5 * i, '/lidar', '/cloud') for i in range(int(LENGTH_S / 0.5) - 2)]
+    messages = [*jittery_robot(start, LENGTH_S, int(start)), *(more if number == 2 else [])]
+    return sorted((stamp, f'/r{number}{source}', f'/r{number}{topic}')
+                  for stamp, source, topic in messages)
+
+
+@pytest.fixture(scope='module', name='folder')
+def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two recordings of each of four robots, in a folder each, at the same times."""
+    folder = tmp_path_factory.mktemp('fleet')
+    for number in range(1, 5):
+        (folder / f'r{number}').mkdir()
+        for start in (10000.0, 20000.0):
+            bag = write_bag(folder / f'r{number}' / f'{start:g}.bag',
+                            of_robot(number, start + number))
+            RobotGraph({f'/r{number}/scan': {f'/r{number}/laser'}},
+                       {f'/r{number}/scan': {f'/r{number}/slam'}},
+                       {f'/r{number}/laser': f'pc{number}'}).save(graph_file(bag))
+    return folder
+
+
+@pytest.fixture(scope='module', name='fleet')
+def _fleet(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A model that was learned on three of them."""
+    path = tmp_path_factory.mktemp('model') / 'fleet.model'
+    trained([str(folder / f'r{number}') for number in (1, 2, 3)], path, '--robots-by-folder',
+            *RENAME)
+    return str(path)
+
+
+def test_one_name_stands_for_that_of_every_robot(fleet: str) -> None:
+    model = TrainedModel.load(fleet)
+    assert {(kind.source, kind.scope) for kind in model.event_types} == {
+        ('/laser', '/scan'), ('/slam', '/map'), ('/battery', '/charge'), ('/lidar', '/cloud')}
+    assert model.encoding.rename == [('/r[0-9]+/(.*)', '/\\1')]
+    assert model.graph == {('/laser', '/scan', '/slam')}
+    assert set(model.hosts) == {'/laser'}
+    assert {recording.robot for recording in model.recordings} == {'r1', 'r2', 'r3'}
+
+
+def test_what_only_some_robots_have_is_named_and_missed_on_none_of_the_others(
+        fleet: str, folder: Path, tmp_path: Path, capsys) -> None:
+    line = '/lidar: optional, only r2 of 3 robots had it in training'
+    said = printed_by(info, [fleet, '--details'])
+    assert line in said and 'rename          /r[0-9]+/(.*) to /\\1' in said
+    evidence = json.loads(printed_by(info, [fleet, '--json']))['evidence']
+    assert evidence['robots'] == ['r1', 'r2', 'r3']
+    assert evidence['optional'] == {'/lidar': ['r2']}
+    model = TrainedModel.load(fleet)
+    lidar = next(each for each in model.coverage() if each.component == '/lidar')
+    # Else the recordings of the other robots would be silences of a minute.
+    assert lidar.death_found_after is not None and lidar.death_found_after < 20.0
+    calibrated = str(tmp_path / 'm')
+    assert calibrate.main(['--model', fleet, '--normal', str(folder / 'r4'), '-o', calibrated,
+                           '--robots-by-folder']) == 0
+    assert [each.robot for each in TrainedModel.load(calibrated).calibration.recordings
+            ] == ['r4', 'r4']
+    capsys.readouterr()
+    assert score.main([str(folder / 'r4'), '--model', calibrated]) == 0
+    told = capsys.readouterr()
+    assert '/lidar' not in told.out and 'warning' not in told.err
+
+
+def test_a_rule_that_cannot_be_is_named(folder: Path, tmp_path: Path) -> None:
+    error = error_of(train, [str(folder / 'r1'), '-o', str(tmp_path / 'm'), '--rename', '/r(',
+                             '/x'])
+    assert '--rename: ' in error and "'/r(' is not a regular expression" in error, error
+
+
+def test_the_rules_of_a_model_stay_when_it_learns_more(folder: Path, fleet: str,
+                                                       tmp_path: Path) -> None:
+    more = trained([str(folder / 'r4')], tmp_path / 'm', '--add-to', fleet, '--robots-by-folder')
+    assert len(more.event_types) == 4 and sorted({robot for robot, *_ in more.heard_in}) == [
+        'r1', 'r2', 'r3', 'r4']
+
+
+def test_the_topic_of_the_mode_is_as_the_renames_leave_it() -> None:
+    written = EncodingRules.defaults()
+    written.rename = [('/[^/]+/(.*)', '/\\1')]
+    written.mode = ('/logic/state', 'data')
+    assert Counting(written).renamed(written).mode == ('/logic/state', 'data')
+    robots_own = EncodingRules.defaults()
+    robots_own.mode = ('/r1/state', 'data')
+    counting = Counting(robots_own, rename=(('/r[0-9]+/(.*)', '/\\1'),))
+    assert counting.renamed(robots_own).mode == ('/state', 'data')
+
+
+def test_a_folder_may_have_any_name() -> None:
+    part, = by_folder([BagPart('/data/r\x1b1/monday.bag')])
+    assert part.robot == 'r\ufffd1'
+
+
+NUMBERED_S = 40.0
 NUMBERS = (48213, 7, 91002, 33333)
 PLAIN = '/ns/worker'
 
@@ -79,11 +181,11 @@ def test_a_name_that_is_taken_is_not_given_again() -> None:
                                                                              '/matlab_N'}
 
 
-def numbered_robot(start: float, number: int, until: float = LENGTH_S) -> Iterable[Message]:
+def numbered_robot(start: float, number: int, until: float = NUMBERED_S) -> Iterable[Message]:
     """The robot, and a node of 10 Hz with a number in its name and that of its topic."""
     name = f'{PLAIN}_{number}'
     more = [(start + 0.003 + 0.1 * i, name, f'{name}/out') for i in range(int(10 * until))]
-    return sorted([*jittery_robot(start, LENGTH_S, number), *more])
+    return sorted([*jittery_robot(start, NUMBERED_S, number), *more])
 
 
 @pytest.fixture(scope='module', name='bags')
@@ -108,12 +210,6 @@ def test_training_takes_it_as_one_and_says_so(bags, tmp_path: Path, capsys) -> N
     crash = write_bag(tmp_path / 'crash.bag', numbered_robot(9000.0, 51511, 20.0))
     assert [(alarm.kind, alarm.culprit) for alarm in load(str(tmp_path / 'm')).judge(crash)
             if alarm.level == 'ERROR'] == [('silent', PLAIN)]
-
-
-def test_event_logs_say_the_same(bags, tmp_path: Path) -> None:
-    log = str(tmp_path / 'log.bag')
-    assert convert.main([*bags, '-o', log]) == 0
-    assert names(trained([log], tmp_path / 'm')) == sorted(ONE)
 
 
 def test_what_is_added_later_is_the_same(bags, tmp_path: Path) -> None:
