@@ -1,5 +1,6 @@
 #include "processor_watch.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
-#include <fstream>
 #include <utility>
 
 #include "self_awareness/core/stream/event.h"
@@ -19,15 +19,6 @@ namespace {
 constexpr std::int64_t kLongestStretch = core::kNanosecondsPerSecond;
 constexpr std::int64_t kMuch = 25000000;  // that is told at once [ns]
 
-/// Time for which processes have waited since the machine began [ns]; 0: the kernel does not tell.
-std::int64_t pressure() {
-  std::ifstream file("/proc/pressure/cpu");
-  std::string word;  // "some avg10=0.00 avg60=0.00 avg300=0.00 total=123" [us], and more lines
-  while (file >> word && word.rfind("total=", 0) != 0) {
-  }
-  return file ? 1000 * std::strtoll(word.c_str() + std::strlen("total="), nullptr, 10) : 0;
-}
-
 /// Processor time that this thread has had [ns].
 std::int64_t ownTime() {
   timespec time{};
@@ -36,6 +27,26 @@ std::int64_t ownTime() {
 }
 
 }  // namespace
+
+ProcessorWatch::ProcessorWatch() : file_(open("/proc/pressure/cpu", O_RDONLY | O_CLOEXEC)) {}
+
+ProcessorWatch::~ProcessorWatch() {
+  if (file_ >= 0) {
+    close(file_);
+  }
+}
+
+std::int64_t ProcessorWatch::pressure() const {
+  char text[256];
+  const ssize_t length = file_ < 0 ? 0 : pread(file_, text, sizeof text - 1, 0);
+  if (length <= 0) {
+    return 0;
+  }
+  text[length] = '\0';
+  // "some avg10=0.00 avg60=0.00 avg300=0.00 total=123" [us], and more lines
+  const char* const total = std::strstr(text, "total=");
+  return total == nullptr ? 0 : 1000 * std::strtoll(total + std::strlen("total="), nullptr, 10);
+}
 
 std::optional<core::Waiting> ProcessorWatch::look(std::int64_t now, std::int64_t steady_now,
                                                   std::int64_t pause) {

@@ -16,6 +16,11 @@ namespace self_awareness {
 /// Belongs to one thread, which looks again and again.
 class ProcessorWatch {
  public:
+  ProcessorWatch();
+  ~ProcessorWatch();
+  ProcessorWatch(const ProcessorWatch&) = delete;
+  ProcessorWatch& operator=(const ProcessorWatch&) = delete;
+
   /// A look at the machine.
   /// @param now ROS time [ns]
   /// @param steady_now steady time at the same moment [ns]
@@ -28,11 +33,15 @@ class ProcessorWatch {
 
  private:
   struct Moment {
-    std::int64_t steady = 0;    // [ns]
-    std::int64_t pressure = 0;  // for which processes have waited [ns]
-    std::int64_t own = 0;       // processor time of this thread [ns]
+    std::int64_t steady = 0;  // [ns]
+    std::int64_t pressure =
+        0;                 // time for which processes have waited since the machine began [ns]
+    std::int64_t own = 0;  // processor time of this thread [ns]
   };
 
+  std::int64_t pressure() const;
+
+  int file_;  // -1: the kernel does not tell
   Moment last_;
   std::optional<core::Waiting> stretch_;  // that is open; none: there was no look
 };
