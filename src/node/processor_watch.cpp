@@ -62,10 +62,15 @@ std::optional<core::Waiting> ProcessorWatch::look(std::int64_t now, std::int64_t
       std::clamp<std::int64_t>(std::max(moment.pressure - before.pressure, late), 0, passed);
   // Simulated time may run at any pace.
   const auto of_time = static_cast<double>(now - stretch_->to);
-  stretch_->waited +=
+  const std::int64_t waited_of_time =
       passed > 0
           ? std::llround(of_time * static_cast<double>(waited) / static_cast<double>(passed))
           : 0;
+  if (waited_of_time > core::Waiting::kStoodStill) {
+    // A standstill is a stretch of its own: what was before may be in no recording.
+    stretch_ = core::Waiting{stretch_->to, stretch_->to, 0};
+  }
+  stretch_->waited += waited_of_time;
   stretch_->to = now;
   if (stretch_->waited < kMuch && stretch_->to - stretch_->from < kLongestStretch) {
     return std::nullopt;

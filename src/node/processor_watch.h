@@ -26,7 +26,7 @@ class ProcessorWatch {
   /// @param steady_now steady time at the same moment [ns]
   /// @param pause that was meant to be between two looks [ns]
   /// @return what is known of the time since the last stretch: at the latest after a second, at
-  /// once where processes wait. None: not yet
+  /// once where processes wait; since the last look, if this program stood still. None: not yet
   std::optional<core::Waiting> look(std::int64_t now, std::int64_t steady_now, std::int64_t pause);
   /// Begins anew: ROS time was set.
   void restart() { stretch_.reset(); }

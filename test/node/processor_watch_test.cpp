@@ -48,6 +48,17 @@ TEST_F(ProcessorWatchTest, ALookThatComesLateIsToldAtOnceAtThePaceOfTime) {
   }
 }
 
+TEST_F(ProcessorWatchTest, AStandstillBeginsWithTheLastLook) {
+  // A monitor hears the first message between two looks, and stands still soon after.
+  const std::int64_t last = 2 * kPause;
+  watch_.look(kStart + kPause, kPause, kPause);
+  watch_.look(kStart + last, last, kPause);
+  const auto pause = watch_.look(kStart + last + 2 * kSecond, last + 2 * kSecond, kPause);
+  ASSERT_TRUE(pause);
+  EXPECT_EQ(pause->from, kStart + last);
+  EXPECT_TRUE(pause->stoodStill());
+}
+
 TEST_F(ProcessorWatchTest, WhereTimeWasSetItBeginsAnew) {
   EXPECT_FALSE(watch_.look(kStart - kSecond, 4 * kPause, kPause));
   watch_.restart();
