@@ -80,15 +80,8 @@ std::vector<Track> Lost::watch(const Choice& choice) const {
 
 std::unique_ptr<const Expectation> Lost::expect(const Model& model, const Halves& /*halves*/,
                                                 std::vector<std::size_t> tracks) const {
-  AttributeCounts all;
-  for (const std::size_t track : tracks) {
-    const AttributeCounts& counts = model.learned().type(model.tracks()[track].to).attributes;
-    if (counts.shareOfLosses() <= model.tuning().rare) {  // who loses more does so by itself
-      all.merge(counts);
-    }
-  }
   return std::make_unique<ExpectedMessages<NumbersOfMessages>>(
-      model, std::move(tracks), [&, of_all = all.shareOfLosses()](EventId id) {
+      model, std::move(tracks), [&, of_all = model.shareOfLosses()](EventId id) {
         const Tuning& tuning = model.tuning();
         const AttributeCounts& counts = model.learned().type(id).attributes;
         NumbersOfMessages::Usual usual;

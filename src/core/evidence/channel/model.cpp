@@ -117,6 +117,17 @@ double Model::usualDelay(EventId from, EventId to, double share) const {
   return delays.quantile(share, longest);
 }
 
+double Model::shareOfLosses() const {
+  AttributeCounts all;
+  for (const Track& track : tracks_) {
+    const AttributeCounts& counts = learned().type(track.to).attributes;
+    if (track.channel->kind() == Kind::kLossy && counts.shareOfLosses() <= tuning_.rare) {
+      all.merge(counts);
+    }
+  }
+  return all.shareOfLosses();
+}
+
 double Model::leastLimit(std::size_t track) const {
   return expectation(track).leastLimit(track);
 }

@@ -209,14 +209,8 @@ double LimitSearch::lossesOf(const std::vector<Gaps>& all) const {
         }));
     came += numberOf(id);
   }
-  AttributeCounts numbered;
-  for (const Track& track : model_.tracks()) {
-    if (track.channel->kind() == Kind::kLossy) {
-      numbered.merge(model_.statistics().type(track.to).attributes);
-    }
-  }
   // Queues lose what comes fast, and nothing else: then so many slow ones come without a loss.
-  const double told = numbered.shareOfLosses();
+  const double told = model_.shareOfLosses();
   return came > 0 && (lost > 0 || told * came > -std::log(tuning_.rare)) ? lost / came : told;
 }
 

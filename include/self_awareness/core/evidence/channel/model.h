@@ -94,6 +94,9 @@ class Model {
   /// Delay from `from` to `to` [ns] that a share (0 to 1) of the delays in training did not
   /// exceed. Exact for the longest gaps of a type; an estimate within the bin for the others.
   double usualDelay(EventId from, EventId to, double share) const;
+  /// Share of the messages that were lost in training, as the numbers in them say. Who lost more
+  /// than Tuning::rare did so by itself, and says nothing of the others.
+  double shareOfLosses() const;
   /// Least limit that a track may have, in units of its evidence (docs/method.md, section 5.3).
   double leastLimit(std::size_t track) const;
 
