@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/evidence/count/log_bins.h"
+#include "core/evidence/watch/arming.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/stream/mode.h"
 
@@ -106,6 +107,9 @@ class CompanyState : public ChannelState {
   bool listens() const override { return !gone_on_.empty(); }
   void add(const Heard::Arrival& arrival, const Heard& heard) override {
     for (const std::uint32_t number : of_type_[arrival.id].to) {
+      if (arrival.stamp - arrival.last_stamp > pause_[number]) {
+        arming_[number].end(goneOn(number, heard), arming_numbers_);
+      }
       gone_on_[number] = 0;
       if (is_mode_[number]) {
         lasted_[number] = heard.lasted(fromOf(number), arrival.stamp);
@@ -116,6 +120,23 @@ class CompanyState : public ChannelState {
     }
     for (const std::uint32_t number : of_type_[arrival.id].from) {
       ++gone_on_[number];
+    }
+  }
+  void disarm(EventId id) override {
+    for (const std::uint32_t number : of_type_[id].to) {
+      arming_[number].forget();
+    }
+  }
+  void addDisarmed(std::vector<std::size_t>& tracks) const override {
+    for (std::size_t number = 0; number < arming_.size(); ++number) {
+      if (!arming_[number].armed()) {
+        tracks.push_back(expected_.tracks()[number]);
+      }
+    }
+  }
+  void capAt(const std::vector<double>& limits) override {
+    for (std::size_t number = 0; number < arming_.size(); ++number) {
+      arming_[number].limitTo(limits[expected_.tracks()[number]]);
     }
   }
   void forget(EventId id) override {
@@ -130,6 +151,7 @@ class CompanyState : public ChannelState {
     std::fill(gone_on_.begin(), gone_on_.end(), 0);
     std::fill(lasted_.begin(), lasted_.end(), 0);
     std::fill(forgotten_.begin(), forgotten_.end(), false);
+    std::for_each(arming_.begin(), arming_.end(), [](WaitArming& each) { each.restart(); });
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
   void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
@@ -157,7 +179,10 @@ class CompanyState : public ChannelState {
   // closed, by now.
   std::vector<std::int64_t> lasted_;
   std::vector<bool> forgotten_;
-  std::vector<OfType> of_type_;  // by id
+  const Arming::Numbers arming_numbers_;
+  std::vector<WaitArming> arming_;   // by number
+  std::vector<std::int64_t> pause_;  // a longer gap of `to` is one [ns], by number
+  std::vector<OfType> of_type_;      // by id
 };
 
 std::unique_ptr<ChannelState> ExpectedCompany::start() const {
@@ -171,12 +196,16 @@ CompanyState::CompanyState(const ExpectedCompany& expected)
       is_mode_(expected.tracks().size(), false),
       lasted_(expected.tracks().size(), 0),
       forgotten_(expected.tracks().size(), false),
+      arming_numbers_(expected.model().tuning()),
+      arming_(expected.tracks().size()),
       of_type_(expected.model().size()) {
   for (std::uint32_t number = 0; number < gone_on_.size(); ++number) {
     const Track& track = trackOf(number);
     of_type_[track.to].to.push_back(number);
     of_type_[track.from].from.push_back(number);
     is_mode_[number] = expected.isMode(track.from);
+    const Pauses pauses(expected.model().statistics(), track.to, expected.model().tuning());
+    pause_.push_back(static_cast<std::int64_t>(pauses.longer_than));
   }
 }
 
@@ -201,7 +230,8 @@ void CompanyState::closeWindow(const Heard& heard, std::vector<double>& evidence
     forgotten_[number] = false;
     // Who was not heard yet may still be starting.
     const bool may_say = started || heard.hasSeen(trackOf(number).to);
-    evidence[expected_.tracks()[number]] = may_say ? goneOn(number, heard) : 0;
+    evidence[expected_.tracks()[number]] =
+        may_say ? arming_[number].counted(goneOn(number, heard), arming_numbers_) : 0;
   }
 }
 

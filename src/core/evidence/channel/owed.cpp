@@ -7,6 +7,7 @@
 
 #include "core/evidence/channel/share.h"
 #include "core/evidence/channel/sum.h"
+#include "core/evidence/watch/arming.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
@@ -117,18 +118,32 @@ class OwedState : public ChannelState {
       ask(owed_[number], arrival.stamp, heard);
     }
   }
+  void disarm(EventId id) override {
+    for (const std::uint32_t number : asks_[id].answered) {
+      owed_[number].arming.forget();
+    }
+  }
   void restart() override {
     for (Answer& answer : owed_) {
       answer.requests = 0;
       answer.sum.value = 0;
+      answer.arming.restart();
     }
   }
   void capAt(const std::vector<double>& limits) override {
     for (Answer& answer : owed_) {
+      answer.arming.limitTo(limits[answer.track]);
       answer.sum.capAt(limits[answer.track], model_.tuning().most_of_limit);
     }
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  void addDisarmed(std::vector<std::size_t>& tracks) const override {
+    for (const Answer& answer : owed_) {
+      if (!answer.arming.armed()) {
+        tracks.push_back(answer.track);
+      }
+    }
+  }
   std::optional<std::int64_t> onset(std::size_t track) const override {
     const Answer& answer = answerOf(track);
     return answer.requests > 1 || answer.step == 0 ? answer.since : answer.sum.since;
@@ -146,6 +161,7 @@ class OwedState : public ChannelState {
     std::int64_t since = 0;      // stamp of the first of them [ns], if there is one
     std::int64_t last = 0;       // stamp of the last of them
     CountedSum sum;              // of requests; unusual: without an answer
+    WaitArming arming;           // in seconds
   };
   /// Numbers of answers: that an event type asks for, and that it is.
   struct OfType {
@@ -160,10 +176,11 @@ class OwedState : public ChannelState {
   static double waiting(const Answer& answer, const Heard& heard) {
     return answer.requests > 0 ? toSeconds(heard.windowEnd() - answer.since) : 0;
   }
-  static void answer(Answer& answer, std::int64_t stamp);
-  static void ask(Answer& answer, std::int64_t stamp, const Heard& heard);
+  void answer(Answer& answer, std::int64_t stamp) const;
+  void ask(Answer& answer, std::int64_t stamp, const Heard& heard) const;
 
   const Model& model_;
+  const Arming::Numbers arming_numbers_;
   std::vector<Answer> owed_;
   std::vector<OfType> asks_;  // by id
 };
@@ -173,7 +190,7 @@ std::unique_ptr<ChannelState> ExpectedAnswers::start() const {
 }
 
 OwedState::OwedState(const ExpectedAnswers& expected)
-    : model_(expected.model()), asks_(model_.size()) {
+    : model_(expected.model()), arming_numbers_(model_.tuning()), asks_(model_.size()) {
   for (const std::size_t track : expected.tracks()) {
     const auto number = static_cast<std::uint32_t>(owed_.size());
     const auto [channel, to, from] = model_.tracks()[track];
@@ -187,16 +204,19 @@ OwedState::OwedState(const ExpectedAnswers& expected)
   }
 }
 
-void OwedState::answer(Answer& answer, std::int64_t stamp) {
+void OwedState::answer(Answer& answer, std::int64_t stamp) const {
   if (answer.step > 0 && answer.requests > 0) {
     answer.sum.count(false, answer.step, stamp);
   } else if (answer.step > 0) {
     answer.sum.add(-answer.step, stamp);  // the one before was only late
   }
+  if (answer.requests > 0) {
+    answer.arming.end(toSeconds(stamp - answer.since), arming_numbers_);
+  }
   answer.requests = 0;
 }
 
-void OwedState::ask(Answer& answer, std::int64_t stamp, const Heard& heard) {
+void OwedState::ask(Answer& answer, std::int64_t stamp, const Heard& heard) const {
   const std::optional<std::int64_t> answered = heard.lastSeen(answer.to);
   if (answer.step > 0) {
     // Who was never heard is NeverHeard's matter.
@@ -212,9 +232,10 @@ void OwedState::ask(Answer& answer, std::int64_t stamp, const Heard& heard) {
 }
 
 void OwedState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
-  for (const Answer& answer : owed_) {
+  for (Answer& answer : owed_) {
     const double seconds = heard.hasSeen(answer.to) ? waiting(answer, heard) : 0;
-    evidence[answer.track] = answer.step > 0 ? answer.sum.value : seconds;
+    evidence[answer.track] =
+        answer.step > 0 ? answer.sum.value : answer.arming.counted(seconds, arming_numbers_);
   }
 }
 

@@ -14,16 +14,43 @@ namespace {
 class SilenceState : public ChannelState {
  public:
   SilenceState(const Model& model, const std::vector<std::size_t>& tracks)
-      : model_(model), tracks_(tracks) {}
+      : model_(model), tracks_(tracks), silences_(tracks.size()) {}
 
+  void capAt(const std::vector<double>& limits) override {
+    for (std::size_t number = 0; number < tracks_.size(); ++number) {
+      silences_[number].limit = limits[tracks_[number]];
+    }
+  }
+  void disarm(EventId id) override {
+    for (std::size_t number = 0; number < tracks_.size(); ++number) {
+      if (model_.tracks()[tracks_[number]].to == id) {
+        silences_[number].age = 0;
+      }
+    }
+  }
+  void restart() override {
+    for (Silence& silence : silences_) {
+      silence.age = 0;
+      silence.more = 0;
+    }
+  }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
-    for (const std::size_t track : tracks_) {
-      const EventId id = model_.tracks()[track].to;
-      evidence[track] = heard.hasSeen(id) ? toSeconds(heard.age(id)) : 0;
+    for (std::size_t number = 0; number < tracks_.size(); ++number) {
+      const EventId id = model_.tracks()[tracks_[number]].to;
+      const double age = heard.hasSeen(id) ? toSeconds(heard.age(id)) : 0;
+      Silence& silence = silences_[number];
+      if (age < silence.age) {
+        end(silence, id, toSeconds(heard.window()));
+      }
+      silence.age = age;
+      evidence[tracks_[number]] = std::max(age - silence.more, 0.0);
     }
   }
   bool isCertain(std::size_t track, double limit, const Heard& heard) const override {
-    return toSeconds(heard.age(model_.tracks()[track].to) - heard.window()) > limit;
+    const auto number = static_cast<std::size_t>(
+        std::lower_bound(tracks_.begin(), tracks_.end(), track) - tracks_.begin());
+    return toSeconds(heard.age(model_.tracks()[track].to) - heard.window()) >
+           limit + silences_[number].more;
   }
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
@@ -53,8 +80,26 @@ class SilenceState : public ChannelState {
   }
 
  private:
+  struct Silence {
+    double limit = std::numeric_limits<double>::quiet_NaN();  // [s]; NaN: there is none
+    double age = 0;   // at the end of the last window [s]
+    double more = 0;  // that it has paused, beyond its limit [s]
+  };
+
+  /// A silence is over. That one who pauses exceeds its limit is news once: it may pause for so
+  /// long. A much longer silence is another thing.
+  void end(Silence& silence, EventId id, double window) const {
+    const Tuning& tuning = model_.tuning();
+    const double limit = silence.limit + silence.more;
+    if (silence.age > limit && silence.age <= tuning.margin * limit &&
+        static_cast<double>(model_.longestGap(id)) > tuning.regular * model_.meanGap(id)) {
+      silence.more = tuning.margin_of_silence * (silence.age + window) - window - silence.limit;
+    }
+  }
+
   const Model& model_;
   const std::vector<std::size_t>& tracks_;
+  std::vector<Silence> silences_;  // by number of the track
 };
 
 class ExpectedSilence : public Expectation {

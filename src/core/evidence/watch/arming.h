@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/stream/event.h"
@@ -48,15 +49,15 @@ class Arming {
   }
   /// It must be as in training once more: one of its event types was gone, or the machine stood
   /// still.
-  void disarm() { *this = Arming(failures_); }
+  void disarm() { *this = after(failures_); }
   /// What was abnormal so far was a start, and is no failure.
   void forget() { abnormal_windows_ = 0; }
   /// Takes in a window.
   /// @param abnormal whether it is beyond its limit
   /// @param calm whether nothing unusual is left of it
   /// @param end of the window [ns]
-  /// @return whether it has failed: what was news is over, or has
-  /// lasted for so long that it has changed for good. Then it is disarmed.
+  /// @return whether it has failed: what was news is over, or has lasted for so long that it has
+  /// changed for good. Then it is disarmed.
   bool fails(bool abnormal, bool calm, std::int64_t end, const Numbers& numbers) {
     if (abnormal_windows_ == 0 && !(armed_ && abnormal)) {
       return false;
@@ -70,14 +71,20 @@ class Arming {
     if (!calm && end - abnormal_since_ < numbers.accept_after) {
       return false;
     }
-    *this = Arming(failures_ + 1);
+    *this = after(failures_ + 1);
     return true;
   }
 
   Arming() = default;
+  /// @param armed whether it counts from the start on
+  explicit Arming(bool armed) : armed_(armed) {}
 
  private:
-  explicit Arming(std::uint32_t failures) : failures_(failures) {}
+  static Arming after(std::uint32_t failures) {
+    Arming anew;
+    anew.failures_ = failures;
+    return anew;
+  }
 
   double excess_ = 0;  // of the events of the block
   std::uint32_t events_ = 0;
@@ -85,6 +92,34 @@ class Arming {
   bool armed_ = false;
   std::uint32_t abnormal_windows_ = 0;  // since it was calm; 0: it is normal
   std::int64_t abnormal_since_ = 0;     // the first of them [ns]
+};
+
+/// The same of who waits: it counts from the start on. That what was missing came after all is
+/// news once; what does not come is missing for as long as it does not.
+class WaitArming {
+ public:
+  bool armed() const { return arming_.armed(); }
+  /// Takes in that what was missing has come, with as much evidence as there was then.
+  void end(double evidence, const Arming::Numbers& numbers) {
+    if (!armed()) {
+      arming_.add(evidence > limit_ ? 1 : 0, numbers);
+    }
+  }
+  /// Takes in a window. @return the evidence that counts
+  double counted(double evidence, const Arming::Numbers& numbers) {
+    const bool abnormal = evidence > limit_;
+    arming_.fails(abnormal, !abnormal, 0, numbers);
+    return armed() ? evidence : 0;
+  }
+  /// It did not come late, but its component was gone.
+  void forget() { arming_.forget(); }
+  /// @param limit of the evidence; NaN: it has none
+  void limitTo(double limit) { limit_ = limit; }
+  void restart() { arming_ = Arming(true); }
+
+ private:
+  Arming arming_{true};
+  double limit_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace self_awareness::core::evidence

@@ -1,5 +1,6 @@
 #include "core/evidence/channel/company.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -97,6 +98,29 @@ TEST_F(CompanyTest, SilenceCountsWhileTheOtherGoesOn) {
   EXPECT_EQ(evidenceAt(100 * kSecond), 10) << "a pause of both is none of one";
   scorer_->add({100 * kSecond, kA});
   EXPECT_EQ(evidenceAt(101 * kSecond), 0);
+}
+
+TEST_F(CompanyTest, ThatItComesAfterAllIsNewsOnce) {
+  learn();
+  scorer_->capAt(allLimits(*model_, 20));
+  std::int64_t now = 0;
+  scorer_->add({now, kA});
+  const auto goOn = [&](int times) {
+    double most = 0;
+    for (int k = 0; k < times; ++k) {
+      scorer_->add({now += kSlow, kB});
+      most = std::max(most, evidenceAt(now));
+    }
+    scorer_->add({now += kWindow, kA});
+    evidenceAt(now += kWindow);
+    return most;
+  };
+  EXPECT_EQ(goOn(30), 30);
+  EXPECT_THAT(scorer_->disarmed(), testing::Contains(track_));
+  for (int k = 0; k < 2 * kArming; ++k) {
+    EXPECT_EQ(goOn(10), 0) << "pauses as in training";
+  }
+  EXPECT_EQ(goOn(30), 30);
 }
 
 TEST_F(CompanyTest, WhoWasNeverHeardMayBeStartingForAMinute) {

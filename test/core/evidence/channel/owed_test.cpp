@@ -1,5 +1,6 @@
 #include "core/evidence/channel/owed.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "channel_case.h"
@@ -51,6 +52,36 @@ TEST_F(OwedTest, RareRequestsAreCountedInSecondsSinceTheFirst) {
   scorer_->restart();
   scorer_->add({2000 * kSecond, kA});
   EXPECT_EQ(evidenceAt(3000 * kSecond), 0) << "who was never heard owes nothing";
+}
+
+TEST_F(OwedTest, ThatAnAnswerComesAfterAllIsNewsOnce) {
+  learn(8 * kSecond);
+  scorer_->capAt(allLimits(*model_, 5));
+  std::int64_t now = 0;
+  scorer_->add({now, kB});
+  const auto ask = [&](std::int64_t wait) {
+    scorer_->add({now += 10 * kSecond, kA});
+    double most = 0;
+    for (const std::int64_t end = now + wait; now < end; now += kWindow) {
+      most = std::max(most, evidenceAt(now));
+    }
+    scorer_->add({now, kB});
+    evidenceAt(now += kWindow);
+    return most;
+  };
+  const std::int64_t gone =
+      static_cast<std::int64_t>(model_->tuning().gone_gaps + 1) * model_->longestGap(kB);
+  EXPECT_GT(ask(gone), 5);
+  EXPECT_GT(ask(8 * kSecond), 5) << "it was gone and came back: that says nothing of answers";
+  EXPECT_THAT(scorer_->disarmed(), testing::Contains(track_)) << "answers may take so long";
+  for (int k = 0; k < 2 * kArming; ++k) {
+    EXPECT_EQ(ask(kSecond), 0);
+  }
+  EXPECT_GT(ask(8 * kSecond), 5) << "it answers as in training again";
+  for (int k = 0; k < 2 * kArming; ++k) {
+    EXPECT_EQ(ask(kSecond), 0);
+  }
+  EXPECT_EQ(ask(8 * kSecond), 0) << "the next time, it takes twice as many answers";
 }
 
 TEST_F(OwedTest, SeriesOfRequestsWithoutAnAnswerAddUp) {

@@ -53,5 +53,33 @@ TEST_F(SilenceTest, ASuspectIsNotSaidToBeUsuallyHeardSoonerThanTrainingShowed) {
   EXPECT_NE(suspect(overdue_).reason.words.find("longer now and then: up to"), std::string::npos);
 }
 
+TEST_F(SilenceTest, ThatOneWhoPausesComesAfterAllIsNewsOnce) {
+  scorer_.capAt(allLimits(*model_, 2));
+  const auto beSilent = [&](std::int64_t silence) {
+    add({now_, kA});
+    for (const std::int64_t end = now_ + silence; now_ < end;) {
+      now_ += kWindow;
+      scorer_.closeWindow(now_);
+    }
+    return evidence(overdue_);
+  };
+  EXPECT_DOUBLE_EQ(beSilent(5 * kSecond), 5);
+  EXPECT_DOUBLE_EQ(beSilent(3 * kSecond), 3) << "the one before was too long to be a pause";
+  EXPECT_LT(beSilent(3500 * kMillisecond), 2) << "it may pause for 3 s, and a quarter more";
+  EXPECT_GT(beSilent(4 * kSecond), 2);
+  restart();
+  EXPECT_DOUBLE_EQ(beSilent(3 * kSecond), 3);
+}
+
+TEST_F(TrackTest, ThatATimerComesAfterAllIsNewsAgain) {
+  const Events ticks = timer(kA, 0, 100 * kSecond, kPeriod);
+  learn(watch(startOf(ticks, 1), startOf(ticks, 2)), kOverdue, kA, kA);
+  scorer_->capAt(allLimits(*model_, 0.6));
+  for (const std::int64_t stamp : {std::int64_t{0}, 950 * kMillisecond}) {
+    scorer_->add({stamp, kA});
+    EXPECT_DOUBLE_EQ(evidenceAt(stamp + 900 * kMillisecond), 0.9);
+  }
+}
+
 }  // namespace
 }  // namespace self_awareness::core::evidence
