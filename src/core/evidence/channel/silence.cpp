@@ -82,7 +82,7 @@ class SilenceState : public ChannelState {
  private:
   struct Silence {
     double limit = std::numeric_limits<double>::quiet_NaN();  // [s]; NaN: there is none
-    double age = 0;   // at the end of the last window [s]
+    double age = 0;                                           // at the end of the last window [s]
     double more = 0;  // that it has paused, beyond its limit [s]
   };
 
