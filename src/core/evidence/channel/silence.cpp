@@ -39,9 +39,10 @@ class SilenceState : public ChannelState {
       const EventId id = model_.tracks()[tracks_[number]].to;
       const double age = heard.hasSeen(id) ? toSeconds(heard.age(id)) : 0;
       Silence& silence = silences_[number];
-      if (age < silence.age) {
+      if (heard.silence(id) < silence.lasted) {
         end(silence, id, toSeconds(heard.window()));
       }
+      silence.lasted = heard.silence(id);
       silence.age = age;
       evidence[tracks_[number]] = std::max(age - silence.more, 0.0);
     }
@@ -83,6 +84,7 @@ class SilenceState : public ChannelState {
   struct Silence {
     double limit = std::numeric_limits<double>::quiet_NaN();  // [s]; NaN: there is none
     double age = 0;                                           // at the end of the last window [s]
+    std::int64_t lasted = 0;                                  // the same, with stalls [ns]
     double more = 0;  // that it has paused, beyond its limit [s]
   };
 
