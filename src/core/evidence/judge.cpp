@@ -324,9 +324,9 @@ void Judge::takeBack(Excused reason) {
 
 std::vector<Disarmed> Judge::disarmed() const {
   std::vector<Disarmed> disarmed;
-  for (const std::size_t index : scorer_.disarmed()) {
-    if (limits_ && !std::isnan(limits_->tracks[index])) {
-      disarmed.push_back({model_->tracks()[index].to, model_->tracks()[index].from});
+  for (std::size_t track = 0; limits_ && track < model_->tracks().size(); ++track) {
+    if (!std::isnan(limits_->tracks[track]) && !scorer_.isArmed(track)) {
+      disarmed.push_back({model_->tracks()[track].to, model_->tracks()[track].from});
     }
   }
   return disarmed;

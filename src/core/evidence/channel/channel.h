@@ -70,8 +70,8 @@ class ChannelState {
   virtual void closeWindow(const Heard& heard, std::vector<double>& evidence) = 0;
   /// Since when what a track sees has been so [ns]; none: it does not know.
   virtual std::optional<std::int64_t> onset(std::size_t /*track*/) const { return std::nullopt; }
-  /// Adds those of its tracks that do not count until they have been as in training.
-  virtual void addDisarmed(std::vector<std::size_t>& /*tracks*/) const {}
+  /// Whether a track counts: it has been as in training.
+  virtual bool isArmed(std::size_t /*track*/) const { return true; }
   /// Whether further windows would say nothing new of a track that is beyond its limit.
   virtual bool isCertain(std::size_t /*track*/, double /*limit*/, const Heard& /*heard*/) const {
     return false;

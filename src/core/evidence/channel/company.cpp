@@ -127,12 +127,8 @@ class CompanyState : public ChannelState {
       arming_[number].forget();
     }
   }
-  void addDisarmed(std::vector<std::size_t>& tracks) const override {
-    for (std::size_t number = 0; number < arming_.size(); ++number) {
-      if (!arming_[number].armed()) {
-        tracks.push_back(expected_.tracks()[number]);
-      }
-    }
+  bool isArmed(std::size_t track) const override {
+    return arming_[expected_.numberOf(track)].armed();
   }
   void capAt(const std::vector<double>& limits) override {
     for (std::size_t number = 0; number < arming_.size(); ++number) {
@@ -237,8 +233,7 @@ void CompanyState::closeWindow(const Heard& heard, std::vector<double>& evidence
 
 void CompanyState::explain(std::size_t track, const Heard& heard, const RecentEvents& /*events*/,
                            Suspect& suspect) const {
-  const auto place = std::lower_bound(expected_.tracks().begin(), expected_.tracks().end(), track);
-  const auto number = static_cast<std::size_t>(place - expected_.tracks().begin());
+  const std::size_t number = expected_.numberOf(track);
   const EventType& from = expected_.model().vocabulary().at(fromOf(number));
   Reason& reason = suspect.reason;
   reason.kind = Kind::kSilent;

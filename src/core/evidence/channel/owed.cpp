@@ -137,13 +137,7 @@ class OwedState : public ChannelState {
     }
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
-  void addDisarmed(std::vector<std::size_t>& tracks) const override {
-    for (const Answer& answer : owed_) {
-      if (!answer.arming.armed()) {
-        tracks.push_back(answer.track);
-      }
-    }
-  }
+  bool isArmed(std::size_t track) const override { return answerOf(track).arming.armed(); }
   std::optional<std::int64_t> onset(std::size_t track) const override {
     const Answer& answer = answerOf(track);
     return answer.requests > 1 || answer.step == 0 ? answer.since : answer.sum.since;
@@ -169,16 +163,14 @@ class OwedState : public ChannelState {
     std::vector<std::uint32_t> answered;
   };
 
-  const Answer& answerOf(std::size_t track) const {
-    return *std::find_if(owed_.begin(), owed_.end(),
-                         [track](const Answer& each) { return each.track == track; });
-  }
+  const Answer& answerOf(std::size_t track) const { return owed_[expected_.numberOf(track)]; }
   static double waiting(const Answer& answer, const Heard& heard) {
     return answer.requests > 0 ? toSeconds(heard.windowEnd() - answer.since) : 0;
   }
   void answer(Answer& answer, std::int64_t stamp) const;
   void ask(Answer& answer, std::int64_t stamp, const Heard& heard) const;
 
+  const ExpectedAnswers& expected_;
   const Model& model_;
   const Arming::Numbers arming_numbers_;
   std::vector<Answer> owed_;
@@ -190,7 +182,10 @@ std::unique_ptr<ChannelState> ExpectedAnswers::start() const {
 }
 
 OwedState::OwedState(const ExpectedAnswers& expected)
-    : model_(expected.model()), arming_numbers_(model_.tuning()), asks_(model_.size()) {
+    : expected_(expected),
+      model_(expected.model()),
+      arming_numbers_(model_.tuning()),
+      asks_(model_.size()) {
   for (const std::size_t track : expected.tracks()) {
     const auto number = static_cast<std::uint32_t>(owed_.size());
     const auto [channel, to, from] = model_.tracks()[track];

@@ -80,13 +80,7 @@ class PairsState : public ChannelState {
   std::optional<std::int64_t> onset(std::size_t track) const override {
     return pairOf(track).sum.since;
   }
-  void addDisarmed(std::vector<std::size_t>& tracks) const override {
-    for (std::uint32_t number = 0; number < pairs_.size(); ++number) {
-      if (!pairs_[number].armed) {
-        tracks.push_back(track_of_[number]);
-      }
-    }
-  }
+  bool isArmed(std::size_t track) const override { return pairOf(track).armed; }
   void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
                Suspect& suspect) const override;
 

@@ -92,14 +92,6 @@ std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   return evidence_;
 }
 
-std::vector<std::size_t> Scorer::disarmed() const {
-  std::vector<std::size_t> tracks;
-  for (const ChannelState* const state : closing_) {
-    state->addDisarmed(tracks);
-  }
-  return tracks;
-}
-
 bool Scorer::isCertain(std::size_t track, double limit) const {
   return stateOf(track).isCertain(track, limit, heard_);
 }

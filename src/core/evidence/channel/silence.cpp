@@ -13,8 +13,11 @@ namespace {
 
 class SilenceState : public ChannelState {
  public:
-  SilenceState(const Model& model, const std::vector<std::size_t>& tracks)
-      : model_(model), tracks_(tracks), silences_(tracks.size()) {}
+  SilenceState(const Model& model, const Expectation& expected)
+      : model_(model),
+        expected_(expected),
+        tracks_(expected.tracks()),
+        silences_(tracks_.size()) {}
 
   void capAt(const std::vector<double>& limits) override {
     for (std::size_t number = 0; number < tracks_.size(); ++number) {
@@ -48,10 +51,8 @@ class SilenceState : public ChannelState {
     }
   }
   bool isCertain(std::size_t track, double limit, const Heard& heard) const override {
-    const auto number = static_cast<std::size_t>(
-        std::lower_bound(tracks_.begin(), tracks_.end(), track) - tracks_.begin());
     return toSeconds(heard.age(model_.tracks()[track].to) - heard.window()) >
-           limit + silences_[number].more;
+           limit + silences_[expected_.numberOf(track)].more;
   }
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
@@ -100,6 +101,7 @@ class SilenceState : public ChannelState {
   }
 
   const Model& model_;
+  const Expectation& expected_;
   const std::vector<std::size_t>& tracks_;
   std::vector<Silence> silences_;  // by number of the track
 };
@@ -110,7 +112,7 @@ class ExpectedSilence : public Expectation {
       : Expectation(std::move(tracks)), model_(model) {}
 
   std::unique_ptr<ChannelState> start() const override {
-    return std::make_unique<SilenceState>(model_, tracks());
+    return std::make_unique<SilenceState>(model_, *this);
   }
   double leastLimit(std::size_t /*track*/) const override { return 0; }
   double limit(std::size_t /*track*/, double /*largest*/, double most) const override {

@@ -35,10 +35,7 @@ class PairsTest : public FollowedTest {
     return abnormal;
   }
 
-  bool isWatched() const {
-    const std::vector<std::size_t> disarmed = scorer_.disarmed();
-    return std::find(disarmed.begin(), disarmed.end(), pair_) == disarmed.end();
-  }
+  bool isWatched() const { return scorer_.isArmed(pair_); }
 
   std::size_t pair_ = track(kPairs, kB, kA);
 };
