@@ -123,7 +123,8 @@ bool Relations::areOfOneSource(EventId from, EventId to) const {
   return counts_.vocabulary().at(from).source == counts_.vocabulary().at(to).source;
 }
 
-double Relations::spread(EventId from, EventId to, double left_out, double period) const {
+double Relations::spread(EventId from, EventId to, double left_out) const {
+  const double period = this->period(from, to);
   const DelayHistogram& delays = counts_.delays(from, to);
   const double wanted = (1 - left_out) * static_cast<double>(counts_.total(from, to));
   if (wanted <= 0 || period <= 0) {
@@ -184,13 +185,9 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
   }
   relation.starts = numberOfStarts(spans, toNanoseconds(tuning_.start_time));
   const double left_out = std::min(1 - tuning_.usual, least_share / 2);
-  relation.spread = spread(from, to, left_out, period(from, to));
+  relation.spread = spread(from, to, left_out);
   relation.reaches = reaches(from, to);
   relation.irregular = isIrregular(from, to);
-  if (relation.reaches && !areOfOneSource(from, to)) {
-    // It may answer to every Nth message: then its period is its own.
-    relation.spread = std::min(relation.spread, spread(from, to, left_out, meanGap(to)));
-  }
   const double level = relation.reaches && relation.irregular   ? 1
                        : relation.reaches || relation.irregular ? tuning_.chance
                                                                 : tuning_.chance / looked_at_;

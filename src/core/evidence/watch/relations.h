@@ -68,8 +68,7 @@ class Relations {
   bool areOfOneSource(EventId from, EventId to) const;
   /// Share of a period that the delays lie in, in all starts together, 0 to 1.
   /// @param left_out share of the delays that may lie elsewhere
-  /// @param period [ns]
-  double spread(EventId from, EventId to, double left_out, double period) const;
+  double spread(EventId from, EventId to, double left_out) const;
 
   const Statistics& counts_;
   const SourceGraph& graph_;

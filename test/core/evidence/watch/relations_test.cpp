@@ -180,30 +180,6 @@ TEST(Relations, AMessageThatGetsThereIsAReason) {
       << "who sends is not known";
 }
 
-TEST(Relations, WhoAnswersToEveryFourthMessageHasItsOwnPeriod) {
-  // In three starts: answers after 20 to 90 ms of a period of 100 ms.
-  std::vector<Events> starts;
-  for (int start = 0; start < 3; ++start) {
-    const Events asked = timer(kA, 0, kLength, kPeriod);
-    Events answers;
-    for (std::size_t k = 0; k < asked.size(); k += 4) {
-      const auto delay = static_cast<std::int64_t>(20 + (k / 4) % 8 * 10) * kMillisecond;
-      answers.push_back({asked[k].stamp + delay, kB});
-    }
-    starts.push_back(later(together({asked, answers}), start * kStart));
-  }
-  const Statistics counts = countsOf(starts, 2);
-  const Relation reached = delays(counts, connected("/x"));
-  EXPECT_LT(reached.spread, 0.25);
-  EXPECT_TRUE(reached.watched);
-  const Relation alone = delays(counts);
-  EXPECT_GT(alone.spread, 0.6) << "it may be any message's answer";
-  EXPECT_FALSE(alone.watched);
-  // Of two topics of one node, nobody knows what comes upon what.
-  const Statistics own = countsOf(starts, {{"/a", "/x", "T"}, {"/a", "/y", "T"}});
-  EXPECT_GT(delays(own, connected("/x")).spread, 0.6);
-}
-
 TEST(Relations, WhatEverybodyHearsIsNoReason) {
   const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond});
   EXPECT_TRUE(delays(counts, connected("/x", 3)).reaches);
