@@ -13,46 +13,36 @@ namespace {
 
 class SilenceState : public ChannelState {
  public:
-  SilenceState(const Model& model, const Expectation& expected)
-      : model_(model),
-        expected_(expected),
-        tracks_(expected.tracks()),
-        silences_(tracks_.size()) {}
+  SilenceState(const Model& model, const std::vector<std::size_t>& tracks)
+      : model_(model), tracks_(tracks), silences_(model.size()) {}
 
   void capAt(const std::vector<double>& limits) override {
-    for (std::size_t number = 0; number < tracks_.size(); ++number) {
-      silences_[number].limit = limits[tracks_[number]];
+    for (const std::size_t track : tracks_) {
+      silences_[model_.tracks()[track].to].limit = limits[track];
     }
   }
-  void disarm(EventId id) override {
-    for (std::size_t number = 0; number < tracks_.size(); ++number) {
-      if (model_.tracks()[tracks_[number]].to == id) {
-        silences_[number].age = 0;
-      }
-    }
-  }
+  void disarm(EventId id) override { silences_[id].age = 0; }
   void restart() override {
-    for (Silence& silence : silences_) {
+    for (OfType& silence : silences_) {
       silence.age = 0;
       silence.more = 0;
     }
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
-    for (std::size_t number = 0; number < tracks_.size(); ++number) {
-      const EventId id = model_.tracks()[tracks_[number]].to;
-      const double age = heard.hasSeen(id) ? toSeconds(heard.age(id)) : 0;
-      Silence& silence = silences_[number];
+    for (const std::size_t track : tracks_) {
+      const EventId id = model_.tracks()[track].to;
+      OfType& silence = silences_[id];
       if (heard.silence(id) < silence.lasted) {
-        end(silence, id, toSeconds(heard.window()));
+        learn(silence, id, toSeconds(heard.window()));
       }
       silence.lasted = heard.silence(id);
-      silence.age = age;
-      evidence[tracks_[number]] = std::max(age - silence.more, 0.0);
+      silence.age = heard.hasSeen(id) ? toSeconds(heard.age(id)) : 0;
+      evidence[track] = std::max(silence.age - silence.more, 0.0);
     }
   }
   bool isCertain(std::size_t track, double limit, const Heard& heard) const override {
-    return toSeconds(heard.age(model_.tracks()[track].to) - heard.window()) >
-           limit + silences_[expected_.numberOf(track)].more;
+    const EventId id = model_.tracks()[track].to;
+    return toSeconds(heard.age(id) - heard.window()) > limit + silences_[id].more;
   }
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
@@ -82,16 +72,16 @@ class SilenceState : public ChannelState {
   }
 
  private:
-  struct Silence {
+  struct OfType {
     double limit = std::numeric_limits<double>::quiet_NaN();  // [s]; NaN: there is none
     double age = 0;                                           // at the end of the last window [s]
-    std::int64_t lasted = 0;                                  // the same, with stalls [ns]
-    double more = 0;  // that it has paused, beyond its limit [s]
+    double more = 0;          // that it has paused, beyond its limit [s]
+    std::int64_t lasted = 0;  // age, stalls and all [ns]
   };
 
   /// A silence is over. That one who pauses exceeds its limit is news once: it may pause for so
   /// long. A much longer silence is another thing.
-  void end(Silence& silence, EventId id, double window) const {
+  void learn(OfType& silence, EventId id, double window) const {
     const Tuning& tuning = model_.tuning();
     const double limit = silence.limit + silence.more;
     if (silence.age > limit && silence.age <= tuning.margin * limit &&
@@ -101,9 +91,8 @@ class SilenceState : public ChannelState {
   }
 
   const Model& model_;
-  const Expectation& expected_;
   const std::vector<std::size_t>& tracks_;
-  std::vector<Silence> silences_;  // by number of the track
+  std::vector<OfType> silences_;  // by id
 };
 
 class ExpectedSilence : public Expectation {
@@ -112,7 +101,7 @@ class ExpectedSilence : public Expectation {
       : Expectation(std::move(tracks)), model_(model) {}
 
   std::unique_ptr<ChannelState> start() const override {
-    return std::make_unique<SilenceState>(model_, *this);
+    return std::make_unique<SilenceState>(model_, tracks());
   }
   double leastLimit(std::size_t /*track*/) const override { return 0; }
   double limit(std::size_t /*track*/, double /*largest*/, double most) const override {
