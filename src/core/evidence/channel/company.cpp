@@ -140,6 +140,7 @@ class CompanyState : public ChannelState {
       for (const std::uint32_t number : *numbers) {
         gone_on_[number] = 0;
         forgotten_[number] = true;
+        arming_[number].forget();
       }
     }
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -93,6 +94,7 @@ void Explanation::accuse(const Excess& excess, const Unusual& window,
       wrong = Wrong::kOther;
     } else if (wrong == Wrong::kOwn) {
       wrong = Wrong::kLate;
+      later.after.insert(from);
     }
   }
   unusual->sum += excess.share;
@@ -140,12 +142,37 @@ void Explanation::setUnlikelyAside(std::vector<Accused>& accused, const Unusual&
   std::for_each(left, accused.end(), [](Accused& each) { each.wrong = Wrong::kOther; });
 }
 
+void Explanation::setExplainedAside(std::vector<Accused>& accused) {
+  std::map<std::size_t, Accused*> late;
+  std::vector<Accused*> least_first;
+  for (Accused& each : accused) {
+    late[each.component] = &each;
+    if (each.wrong == Wrong::kLate) {
+      least_first.push_back(&each);
+    }
+  }
+  std::stable_sort(least_first.begin(), least_first.end(),
+                   [](const Accused* a, const Accused* b) { return a->sum < b->sum; });
+  for (Accused* const victim : least_first) {
+    const auto explains = [&](std::size_t component) {
+      const auto cause = late.find(component);
+      return cause != late.end() && cause->second->wrong < Wrong::kOther &&
+             (cause->second->wrong < Wrong::kLate ||
+              cause->second->after.size() > cause->second->after.count(victim->component));
+    };
+    if (std::all_of(victim->after.begin(), victim->after.end(), explains)) {
+      victim->wrong = Wrong::kOther;
+    }
+  }
+}
+
 std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accused,
                                                      const Unusual& window) const {
   accused.erase(std::remove_if(accused.begin(), accused.end(),
                                [](const Accused& each) { return each.main == nullptr; }),
                 accused.end());
   setUnlikelyAside(accused, window);
+  setExplainedAside(accused);
   std::stable_sort(accused.begin(), accused.end(), [](const Accused& a, const Accused& b) {
     const auto of = [](const Accused& each) {
       return each.wrong == Wrong::kAbsent

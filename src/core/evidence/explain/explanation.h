@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,7 @@ class Explanation {
     const Excess* main = nullptr;  // what it is named for
     double sum = 0;                // of the shares that involve it
     bool abnormal = false;         // one of them is beyond its limit
+    std::set<std::size_t> after;   // components after which it is late
     // Of who is absent: when it should have come, and when at the latest [ns]; whether it is
     // beyond its limit; and whether something else of it was heard since.
     std::int64_t due = std::numeric_limits<std::int64_t>::max();
@@ -52,6 +54,8 @@ class Explanation {
   /// Who is absent, but not beyond its limit, is the root of who is to blame, or hardly is: then
   /// it is among the rest.
   void setUnlikelyAside(std::vector<Accused>& accused, const Unusual& window) const;
+  /// So is who is late only after those that something else is wrong with.
+  static void setExplainedAside(std::vector<Accused>& accused);
   /// Those with something wrong, ordered.
   std::vector<Accused> order(std::vector<Accused> accused, const Unusual& window) const;
   std::vector<Accused> rootFirst(const std::vector<Accused>& accused, const Unusual& window) const;

@@ -111,7 +111,7 @@ class WaitArming {
     arming_.fails(abnormal, !abnormal, 0, numbers);
     return armed() ? evidence : 0;
   }
-  /// It did not come late, but its component was gone.
+  /// It did not come late, but its component was gone; or its evidence ended otherwise.
   void forget() { arming_.forget(); }
   /// @param limit of the evidence; NaN: it has none
   void limitTo(double limit) { limit_ = limit; }

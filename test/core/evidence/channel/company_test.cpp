@@ -114,6 +114,13 @@ TEST_F(CompanyTest, ThatItComesAfterAllIsNewsOnce) {
     evidenceAt(now += kWindow);
     return most;
   };
+  for (int k = 0; k < 30; ++k) {
+    scorer_->add({now += kSlow, kB});
+    evidenceAt(now);
+  }
+  scorer_->forget(kA);
+  EXPECT_EQ(evidenceAt(now += kWindow), 0);
+  EXPECT_TRUE(scorer_->isArmed(track_)) << "it has not come";
   EXPECT_EQ(goOn(30), 30);
   EXPECT_FALSE(scorer_->isArmed(track_));
   for (int k = 0; k < 2 * kArming; ++k) {
