@@ -69,7 +69,12 @@ double shareGoneOn(const Statistics& counts, EventId id, const Pauses& pauses, E
 class ExpectedCompany : public Expectation {
  public:
   ExpectedCompany(const Model& model, std::vector<std::size_t> tracks)
-      : Expectation(std::move(tracks)), model_(model) {}
+      : Expectation(std::move(tracks)), model_(model) {
+    for (const std::size_t track : this->tracks()) {
+      const Pauses pauses(model.statistics(), model.tracks()[track].to, model.tuning());
+      pauses_.push_back(static_cast<std::int64_t>(pauses.longer_than));
+    }
+  }
 
   std::unique_ptr<ChannelState> start() const override;
   double leastLimit(std::size_t track) const override {
@@ -94,10 +99,13 @@ class ExpectedCompany : public Expectation {
     return largest * gap < silence ? most : std::numeric_limits<double>::quiet_NaN();
   }
   bool isMode(EventId from) const { return model_.vocabulary().tellsMode(from); }
+  /// Whether a gap [ns] of the `to` of a track, by number, is a pause.
+  bool isPause(std::size_t number, std::int64_t gap) const { return gap > pauses_[number]; }
   const Model& model() const { return model_; }
 
  private:
   const Model& model_;
+  std::vector<std::int64_t> pauses_;  // longer gaps are some [ns], by number
 };
 
 class CompanyState : public ChannelState {
@@ -107,9 +115,10 @@ class CompanyState : public ChannelState {
   bool listens() const override { return !gone_on_.empty(); }
   void add(const Heard::Arrival& arrival, const Heard& heard) override {
     for (const std::uint32_t number : of_type_[arrival.id].to) {
-      if (arrival.stamp - arrival.last_stamp > pause_[number]) {
-        arming_[number].end(goneOn(number, heard), arming_numbers_);
+      if (expected_.isPause(number, arrival.stamp - arrival.last_stamp)) {
+        arming_[number].add(goneOn(number, heard), arming_numbers_);
       }
+      arming_[number].come();
       gone_on_[number] = 0;
       if (is_mode_[number]) {
         lasted_[number] = heard.lasted(fromOf(number), arrival.stamp);
@@ -140,7 +149,6 @@ class CompanyState : public ChannelState {
       for (const std::uint32_t number : *numbers) {
         gone_on_[number] = 0;
         forgotten_[number] = true;
-        arming_[number].forget();
       }
     }
   }
@@ -177,9 +185,8 @@ class CompanyState : public ChannelState {
   std::vector<std::int64_t> lasted_;
   std::vector<bool> forgotten_;
   const Arming::Numbers arming_numbers_;
-  std::vector<WaitArming> arming_;   // by number
-  std::vector<std::int64_t> pause_;  // a longer gap of `to` is one [ns], by number
-  std::vector<OfType> of_type_;      // by id
+  std::vector<WaitArming> arming_;  // by number
+  std::vector<OfType> of_type_;     // by id
 };
 
 std::unique_ptr<ChannelState> ExpectedCompany::start() const {
@@ -201,8 +208,6 @@ CompanyState::CompanyState(const ExpectedCompany& expected)
     of_type_[track.to].to.push_back(number);
     of_type_[track.from].from.push_back(number);
     is_mode_[number] = expected.isMode(track.from);
-    const Pauses pauses(expected.model().statistics(), track.to, expected.model().tuning());
-    pause_.push_back(static_cast<std::int64_t>(pauses.longer_than));
   }
 }
 

@@ -206,7 +206,8 @@ void OwedState::answer(Answer& answer, std::int64_t stamp) const {
     answer.sum.add(-answer.step, stamp);  // the one before was only late
   }
   if (answer.requests > 0) {
-    answer.arming.end(toSeconds(stamp - answer.since), arming_numbers_);
+    answer.arming.add(toSeconds(stamp - answer.since), arming_numbers_);
+    answer.arming.come();
   }
   answer.requests = 0;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
 #include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/stream/event.h"
@@ -99,19 +100,23 @@ class Arming {
 class WaitArming {
  public:
   bool armed() const { return arming_.armed(); }
-  /// Takes in that what was missing has come, with as much evidence as there was then.
-  void end(double evidence, const Arming::Numbers& numbers) {
+  /// Takes in a wait that is over, with as much evidence as there was then.
+  void add(double evidence, const Arming::Numbers& numbers) {
     if (!armed()) {
       arming_.add(evidence > limit_ ? 1 : 0, numbers);
     }
   }
+  /// What was missing has come. Its evidence alone does not say so: stalls take from it, too.
+  void come() { came_ = true; }
   /// Takes in a window. @return the evidence that counts
   double counted(double evidence, const Arming::Numbers& numbers) {
-    const bool abnormal = evidence > limit_;
-    arming_.fails(abnormal, !abnormal, 0, numbers);
+    if (std::exchange(came_, false)) {
+      arming_.fails(false, true, 0, numbers);
+    }
+    arming_.fails(evidence > limit_, false, 0, numbers);
     return armed() ? evidence : 0;
   }
-  /// It did not come late, but its component was gone; or its evidence ended otherwise.
+  /// It did not come late, but its component was gone.
   void forget() { arming_.forget(); }
   /// @param limit of the evidence; NaN: it has none
   void limitTo(double limit) { limit_ = limit; }
@@ -119,6 +124,7 @@ class WaitArming {
 
  private:
   Arming arming_{true};
+  bool came_ = false;  // since the last window
   double limit_ = std::numeric_limits<double>::quiet_NaN();
 };
 
