@@ -18,8 +18,8 @@ install_packages without-tests
 build > >(tee "$out/build.log" | progress_of_make) 2>&1 || { tail -n 40 "$out/build.log" >&2; exit 1; }
 
 # The demo has its own master, on a free port of the loopback interface.
-port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0))
-print(s.getsockname()[1])')
+port=$(/usr/bin/python3 -c 'from self_awareness_evaluation.live import processes
+print(processes.free_port())')
 export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 ROS_LOG_DIR=$out/log
 unset ROS_HOSTNAME
 

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 import subprocess
 import time
 from pathlib import Path
@@ -12,6 +11,8 @@ from typing import Dict, Iterator
 import pytest
 
 from conftest import ALARM, ROOT, run, run_project_of_library_page
+
+from self_awareness_evaluation.live.processes import free_port
 
 DEADLINE_S = 120.0
 """For a node to speak, or to end, on a busy machine too."""
@@ -36,7 +37,7 @@ def installed(devel: Path, tmp_path_factory: pytest.TempPathFactory) -> Dict[str
     printed = run('bash', '-c', 'source "$0/setup.bash" && env -0', prefix, env=clean)
     environment = dict(entry.split('=', 1) for entry in printed.split('\0') if entry)
     assert str(devel) not in str(environment)
-    environment.update(ROS_IP='127.0.0.1', ROS_MASTER_URI=f'http://127.0.0.1:{_free_port()}')
+    environment.update(ROS_IP='127.0.0.1', ROS_MASTER_URI=f'http://127.0.0.1:{free_port()}')
     return environment
 
 
@@ -164,9 +165,3 @@ def _of_cache(variable: str) -> Path:
     lines = (_build() / 'CMakeCache.txt').read_text(encoding='utf-8').splitlines()
     value, = [line.split('=', 1)[1] for line in lines if line.startswith(f'{variable}:')]
     return Path(value)
-
-
-def _free_port() -> int:
-    with socket.socket() as opened:
-        opened.bind(('127.0.0.1', 0))
-        return opened.getsockname()[1]

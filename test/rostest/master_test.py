@@ -5,7 +5,6 @@ import glob
 import json
 import os
 import signal
-import socket
 import sys
 import time
 from typing import Any, Dict, List, TypeVar
@@ -18,6 +17,7 @@ from live_system import Process, again_if_disturbed, await_condition, make_model
 from monitor_case import FolderCase
 from self_awareness import EncodingRules, read_events
 from self_awareness.msg import SelfAwareness
+from self_awareness_evaluation.live.processes import free_port
 
 _Kept = TypeVar('_Kept', bound=Process)
 
@@ -29,12 +29,6 @@ LONGEST_END_S = 3.0
 """After a signal."""
 LONGEST_SILENCE_S = 5.0
 """After a restart of the master."""
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(('localhost', 0))
-        return probe.getsockname()[1]
 
 
 class Listener(Process):

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import random
 import signal
 import socket
 import subprocess
@@ -20,6 +21,9 @@ WARM_UP_S = 10.0  # so long after the start of a robot is no normal operation ye
 STARTED_WITHIN_S = 90.0  # until then, what is started, robot or monitor, has said something [s]
 _END_WITHIN_S = 30.0  # roslaunch takes half of it before it kills its nodes, which only it can
 _POLL_S = 0.05
+_PORTS = range(12000, 22000)
+"""Of masters: below those that a kernel gives to connections, which may take any of its own
+before the master does."""
 
 
 class LiveError(ValueError):
@@ -27,10 +31,12 @@ class LiveError(ValueError):
 
 
 def free_port() -> int:
-    """Return a free port of the loopback interface."""
-    with socket.socket() as free:
-        free.bind(('127.0.0.1', 0))
-        return int(free.getsockname()[1])
+    """Return a port of the loopback interface that a master can have."""
+    while True:
+        port = random.choice(_PORTS)
+        with contextlib.suppress(OSError), socket.socket() as free:
+            free.bind(('127.0.0.1', port))
+            return port
 
 
 def say(text: str) -> None:

@@ -7,12 +7,13 @@ import os
 import random
 import re
 import signal
-import socket
 import subprocess
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Set
 
 from conftest import wait_until, write_bag
+
+from self_awareness_evaluation.live.processes import free_port
 
 DOCS = Path(__file__).resolve().parents[3] / 'docs'
 README = '../README.md'
@@ -72,14 +73,11 @@ class Reader:
     """Somebody who types the commands of a page, in a folder and under a master of their own."""
 
     def __init__(self, folder: Path) -> None:
-        with socket.socket() as free:
-            free.bind(('127.0.0.1', 0))
-            port = free.getsockname()[1]
         self.folder = folder
         self.typed = ''
         self.environment: Dict[str, str] = {
             **os.environ, 'HOME': str(folder), 'ROS_HOME': str(folder / '.ros'),
-            'ROS_IP': '127.0.0.1', 'ROS_MASTER_URI': f'http://127.0.0.1:{port}',
+            'ROS_IP': '127.0.0.1', 'ROS_MASTER_URI': f'http://127.0.0.1:{free_port()}',
             'PATH': f'/usr/bin:{os.environ["PATH"]}'}
         self._terminals: List[subprocess.Popen] = []
 
