@@ -41,7 +41,8 @@ using NamedState =
 
 core::Occurrence occurrenceOf(std::uint64_t id, bool is_alarm, std::int64_t begin,
                               std::int64_t end, const std::string& kind, std::string culprit,
-                              std::vector<NamedState> named, std::vector<std::string> hosts) {
+                              const std::vector<NamedState>& named,
+                              std::vector<std::string> hosts) {
   core::Occurrence occurrence;
   occurrence.id = id;
   occurrence.level = is_alarm ? core::Alarm::Level::kAlarm : core::Alarm::Level::kSuspicion;
@@ -51,9 +52,9 @@ core::Occurrence occurrenceOf(std::uint64_t id, bool is_alarm, std::int64_t begi
   occurrence.kind = kindNamed(kind);
   occurrence.culprit = std::move(culprit);
   occurrence.hosts = std::move(hosts);
-  for (auto& [component, abnormal, silent_since, wrong, onset] : named) {
+  for (const auto& [component, abnormal, silent_since, wrong, onset] : named) {
     occurrence.named.push_back(
-        {std::move(component), abnormal, begin, silent_since, kindNamed(wrong), onset});
+        {component, abnormal, begin, silent_since, kindNamed(wrong), onset});
   }
   return occurrence;
 }

@@ -48,7 +48,7 @@ std::string typeFieldOf(const EncodingRules& rules, const Connection& connection
       const auto field = rules.type_fields.find(line.type);
       const bool has_classes = rules.classes.count(line.type) > 0;  // of messages of that type
       if (field != rules.type_fields.end() && line.array.empty() && !has_classes) {
-        const std::string path = line.name + "." + field->second;
+        std::string path = line.name + "." + field->second;
         if (!definition.listField(path)) {
           definition.field(path);
         }

@@ -91,10 +91,10 @@ EncodingRules EncodingRules::defaults() {
 }
 
 void EncodingRules::validate() const {
-  NameRenames{renames};
+  const NameRenames checked(renames);
   for (const auto* patterns :
        {&include_topics, &exclude_topics, &include_sources, &exclude_sources}) {
-    NamePatterns{*patterns};
+    const NamePatterns each(*patterns);
   }
   for (const auto& [datatype, field] : type_fields) {
     if (!isPrintable(datatype) || !isPrintable(field)) {

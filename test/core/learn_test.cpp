@@ -197,7 +197,7 @@ Model countsOf(const Learner::Parameters& parameters, const std::vector<int>& al
   Learner learner(parameters, {});
   addTypes(learner);
   for (const int events : all) {
-    learner.count(recording(events * 1000 * kPeriod, events, events == 20 ? 7 : 4));
+    learner.count(recording(std::int64_t{1000} * events * kPeriod, events, events == 20 ? 7 : 4));
   }
   return learner.counts();
 }

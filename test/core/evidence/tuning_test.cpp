@@ -22,7 +22,7 @@ namespace {
 
 std::string errorOfSetting(const std::string& name, double value) {
   Tuning tuning;
-  const std::string error = problemOf([&] { set(tuning, name, value); });
+  std::string error = problemOf([&] { set(tuning, name, value); });
   EXPECT_EQ(tuning == Tuning{}, !error.empty()) << "what is refused changes nothing";
   return error;
 }
@@ -101,7 +101,7 @@ TEST(EvidenceTuning, EveryEndOfARangeGivesLimitsOrSaysWhyNot) {
       set(tuning, number.name, end);
       const auto model = std::make_shared<Model>(watch(first, second, {}, tuning));
       LimitFinder finder(model, {kWindow, 5 * kSecond});
-      const std::string error = problemOf([&] {
+      std::string error = problemOf([&] {
         for (const unsigned seed : {3U, 4U}) {
           finder.startRecording(model);
           addAll(finder, robot(seed));

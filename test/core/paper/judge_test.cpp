@@ -42,7 +42,7 @@ class PaperJudgeTest : public testing::Test {
   // What the model was trained on goes on, and is judged once a period; at last A alone.
   Judgement run(int periods, bool alone = false) {
     Judgement judgement;
-    for (const int end = number_ + periods; number_ < end; ++number_) {
+    for (const std::int64_t end = number_ + periods; number_ < end; ++number_) {
       add({number_ * kPeriod, 0});
       if (!alone) {
         add({number_ * kPeriod + 20000000, 1});

@@ -52,7 +52,7 @@ class AlarmsTest : public testing::Test {
     return verdict;
   }
   std::optional<Alarm> add(const Verdict& verdict) {
-    const std::optional<Alarm> ended = alarms_.add(verdict, kWindow, vocabulary_);
+    std::optional<Alarm> ended = alarms_.add(verdict, kWindow, vocabulary_);
     window_.start += kWindow;
     return ended;
   }
@@ -273,7 +273,7 @@ TEST_F(AlarmsTest, NamesStrangersAndTopicsWhereSourcesAreNotKnown) {
   add(verdict(kSuspicion, {suspect(2, Kind::kStranger)}));
   EXPECT_EQ(alarms_.standing()->culprit, "/z");
   EXPECT_EQ(alarms_.standing()->suspects[0].component, "/z");
-  const std::optional<Alarm> ended = alarms_.end(kStart + 7);
+  std::optional<Alarm> ended = alarms_.end(kStart + 7);
   ASSERT_TRUE(ended && ended->over);
   EXPECT_EQ(ended->end, kStart + 7);
   EXPECT_FALSE(alarms_.standing());

@@ -137,7 +137,7 @@ TEST_F(IncidentsTest, WhatIsWrongWithOthersOrBeganLaterIsNotTheSame) {
 }
 
 TEST_F(IncidentsTest, SevenRestartsInTenMinutesAreOne) {
-  for (int i = 0; i < 7; ++i) {
+  for (std::int64_t i = 0; i < 7; ++i) {
     add(alarm(80 * i, 80 * i + 5, {"/player"}));
   }
   EXPECT_EQ(one().alarms, 7U);
@@ -175,7 +175,7 @@ TEST_F(IncidentsTest, ASuspicionBecomesTheAlarmAfterIt) {
 }
 
 TEST_F(IncidentsTest, NearMissesAreCounted) {
-  for (int i = 0; i < 5; ++i) {
+  for (std::int64_t i = 0; i < 5; ++i) {
     add(suspicion(20 * i, 20 * i + 2, {"/a"}));
   }
   EXPECT_EQ(one().level, Alarm::Level::kSuspicion);
@@ -222,7 +222,7 @@ TEST_F(IncidentsTest, AnotherAlarmEndsTheOneBefore) {
 TEST_F(IncidentsTest, TheOldestMakeRoomNearMissesFirst) {
   add(alarm(0, 1, {"/a"}));
   add(suspicion(1000, 1001, {"/b"}));
-  for (int i = 2; i < 5; ++i) {
+  for (std::int64_t i = 2; i < 5; ++i) {
     add(alarm(1000 * i, 1000 * i + 1, {"/c"}));
   }
   ASSERT_EQ(list().size(), 4U);
@@ -267,7 +267,7 @@ TEST_F(IncidentsTest, MemoryIsBounded) {
   for (int i = 0; i < 120; ++i) {
     many.push_back("/n" + std::to_string(i));
   }
-  for (int i = 0; i < 1100; ++i) {
+  for (std::int64_t i = 0; i < 1100; ++i) {
     add(alarm(3 * i, 3 * i + 1, many));
   }
   EXPECT_EQ(one().others.size(), Incident::kMostNamed);

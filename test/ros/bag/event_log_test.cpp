@@ -89,7 +89,7 @@ class EventLogTest : public InFolder {
 
   /// What is wrong with a log, as its user is told.
   std::string errorOf(const std::string& log, std::size_t recording = 0) const {
-    const std::string error = problemOf<BagError>([&] { read(EventLogReader(log, recording)); });
+    std::string error = problemOf<BagError>([&] { read(EventLogReader(log, recording)); });
     EXPECT_TRUE(error.empty() || begins(error, log)) << "names the file";
     return error;
   }

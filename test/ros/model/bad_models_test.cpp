@@ -34,7 +34,7 @@ class BadModelsTest : public ModelFileTest {
   }
   std::string errorOf(const std::string& bytes) {
     bag_bytes::writeFile(path("bad"), bytes);
-    const std::string error = modelError(path("bad"));
+    std::string error = modelError(path("bad"));
     EXPECT_TRUE(error.empty() || begins(error, path("bad") + ": "));
     EXPECT_FALSE(has(error, "memory")) << error;
     return error;

@@ -58,7 +58,7 @@ class ModelMergeTest : public testing::Test {
     TrainedModel model = first_;
     TrainedModel other = second_;
     change(other);
-    const std::string error = problemOf([&] { merge(model, other); });
+    std::string error = problemOf([&] { merge(model, other); });
     if (!error.empty()) {
       EXPECT_TRUE(model.statistics == first_.statistics);
       EXPECT_TRUE(model.evidence == first_.evidence);

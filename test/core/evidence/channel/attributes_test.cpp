@@ -255,11 +255,11 @@ TEST(Attributes, AreOffWhereTrainingCannotTellWhatIsUsual) {
       {kLost, [](Attributes& each, std::size_t) { each.step = Step::kLostFew; }},
       {kFrozen, [](Attributes& each, std::size_t) { each.same = true; }}};
   for (std::size_t k = 0; k < trainings.size(); ++k) {
-    const auto& [channel, change] = trainings[k];
+    const auto& training = trainings[k];
     const auto model = learned(recordingsWhere(
-        [&](Event& event, std::size_t number) { change(event.attributes, number); }));
-    EXPECT_FALSE(watches(*model, channel)) << k;
-    EXPECT_TRUE(watches(*model, channel, kB)) << k;
+        [&](Event& event, std::size_t number) { training.second(event.attributes, number); }));
+    EXPECT_FALSE(watches(*model, training.first)) << k;
+    EXPECT_TRUE(watches(*model, training.first, kB)) << k;
   }
 }
 

@@ -23,7 +23,7 @@ constexpr std::int64_t kSession = 20 * kSecond;
 /// A timer that runs in every second stretch of a length, from `first` on.
 Events inSessions(EventId id, std::int64_t first, std::int64_t period, std::int64_t session) {
   Events events;
-  for (int number = 0; number < 5; ++number) {
+  for (std::int64_t number = 0; number < 5; ++number) {
     const std::int64_t start = first + 2 * number * session;
     const Events one = timer(id, start, start + session, period);
     events.insert(events.end(), one.begin(), one.end());

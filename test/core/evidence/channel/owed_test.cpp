@@ -171,7 +171,8 @@ TEST_F(OwedTest, WhoeverAnswersSoonestIsAskedFirst) {
   const auto start = [&](unsigned seed) {
     const Events asked = irregular(kC, 0, 1600 * kSecond, 8 * kSecond, seed);
     const Events middle = answers(kA, asked, 400 * kMillisecond);
-    return startOf(together({asked, middle, answers(kB, middle, 100 * kMillisecond)}), 10 * seed);
+    return startOf(together({asked, middle, answers(kB, middle, 100 * kMillisecond)}),
+                   std::int64_t{10} * seed);
   };
   const Model model(watch(start(1), start(2), SourceGraph(), tuning));
   EXPECT_LT(indexOf(model.tracks(), kDeadlines, kB, kA), model.tracks().size());

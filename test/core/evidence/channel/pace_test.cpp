@@ -202,7 +202,7 @@ TEST(PaceOfFewGaps, NeedsMoreWhereTheyDoNotTellItFromAnotherOne) {
 }
 
 TEST(PaceOfClumps, IsToldByTheirNumber) {
-  const auto least = [](int clumps) {  // of ten messages each
+  const auto least = [](std::int64_t clumps) {  // of ten messages each
     const std::int64_t end = clumps * 10 * kSecond;
     const auto start = [&](unsigned seed) {
       Events events;

@@ -16,7 +16,6 @@ namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kLate = 62 * kMillisecond;
-constexpr std::int64_t kEarly = 3 * kMillisecond;
 
 class PairsTest : public FollowedTest {
  protected:

@@ -353,7 +353,7 @@ TEST_F(SendersTest, WhoPlaysOnTopicsOfTheRobotIsTheFirstSuspect) {
   EXPECT_EQ(told()[0].level, Alarm::Level::kSuspicion);
   EXPECT_EQ(told()[0].culprit, "/play_17");
   EXPECT_EQ(told()[0].reason, "/play_17 plays on 2 topics of this robot: /x and /y");
-  for (int k = 0; k < 100; ++k) {  // C answers to what is played
+  for (std::int64_t k = 0; k < 100; ++k) {  // C answers to what is played
     detector_->add({40 * kSecond + k * 20 * kMillisecond, kC});
   }
   run(42 * kSecond, 43 * kSecond, usual_);

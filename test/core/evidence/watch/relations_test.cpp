@@ -255,7 +255,7 @@ TEST(Relations, WhoComesOnlyInTheMiddleOfRecordingsIsSilentBeforeAndAfter) {
 // A tracker at 10 Hz that pauses with what it answers to, and leaves out one in a hundred.
 Statistics pausing() {
   Events asked;
-  for (int burst = 0; burst < 10; ++burst) {
+  for (std::int64_t burst = 0; burst < 10; ++burst) {
     const Events more =
         timer(kA, burst * 44 * kSecond, (burst * 44 + 40) * kSecond, 100 * kMillisecond);
     asked.insert(asked.end(), more.begin(), more.end());
