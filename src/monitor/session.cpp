@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -200,17 +201,20 @@ void Session::tell(ros1::CommunicationState& state) const {
   state.unheard = unheard_;
   state.expected = expected_;
   state.optional = optional_;
-  state.disarmed = disarmed();
+  state.watched_less = watchedLess();
   for (const auto& [id, events] : detector_.unknown()) {
     const core::EventType& type = vocabulary_->at(id);
     state.strangers.push_back({type.source, type.scope, events});
   }
 }
 
-std::vector<std::string> Session::disarmed() const {
+std::vector<std::string> Session::watchedLess() const {
   std::vector<std::string> words;
-  for (const core::Disarmed& each : detector_.disarmed()) {
-    words.push_back(sourceAndTopic(each.id) + " after " + sourceAndTopic(each.after));
+  for (const core::WatchedLess& each : detector_.watchedLess()) {
+    char limit[40];
+    std::snprintf(limit, sizeof limit, ": silent for more than %.1f s", each.limit);
+    words.push_back(sourceAndTopic(each.id) +
+                    (std::isinf(each.limit) ? " after " + sourceAndTopic(each.after) : limit));
   }
   return words;
 }

@@ -79,8 +79,8 @@ class Session {
   /// Event types of the model that this publisher sends.
   std::vector<core::EventId> typesOf(const ros1::Publication& publication) const;
 
-  /// Whose delays are not watched now, and after whom, in words.
-  std::vector<std::string> disarmed() const;
+  /// What is watched less now, in words.
+  std::vector<std::string> watchedLess() const;
 
   /// The mode that the robot is in, up to now [ns], in words; empty: nobody tells it by the
   /// encoding, or this detector knows no modes.

@@ -51,7 +51,7 @@ MonitorState fullLists() {
     state.strangers.push_back({name + "_of_somebody", "/robot/topic_of_somebody", 1});
     state.accepted.push_back(name + "_that_is_new on /robot/topic (stranger), by /rqt");
     state.unheard.insert({name, name + "/debug"});
-    state.disarmed.push_back(name + " on " + name + "/status after " + name + " on " + name);
+    state.watched_less.push_back(name + " on " + name + "/status after " + name + " on " + name);
     if (i >= 70) {
       state.coverage[static_cast<std::size_t>(i)].death_found_after.reset();
     }

@@ -47,8 +47,9 @@ ros1::TrainedModel modelWithModes() {
   return model;
 }
 
-/// Of a robot whose /b answers /a, with limits.
-ros1::TrainedModel modelOfAnswers() {
+/// Of a robot whose /b answers /a.
+/// @param limit of all tracks
+ros1::TrainedModel modelOfAnswers(double limit) {
   namespace evidence = core::evidence;
   ros1::TrainedModel model;
   for (const core::EventId id : {evidence::kA, evidence::kB}) {
@@ -64,7 +65,7 @@ ros1::TrainedModel modelOfAnswers() {
         2);
   }
   model.watch();
-  model.calibration.emplace().limits.tracks.assign(model.watched.tracks.size(), 14);
+  model.calibration.emplace().limits.tracks.assign(model.watched.tracks.size(), limit);
   return model;
 }
 
@@ -171,16 +172,27 @@ TEST(Session, SaysTheModeThatTheRobotTells) {
   tell(20 * kSecond, "DOCKED");
   session.detector().onMissed(session.typesOf({"/logic", "/state"}), 21 * kSecond);
   EXPECT_EQ(session.mode(22 * kSecond), "not known (/state)") << "another one may have been told";
-  EXPECT_EQ(Quiet(modelOfAnswers()).mode(0), "") << "nobody tells it";
+  EXPECT_EQ(Quiet(modelOfAnswers(14)).mode(0), "") << "nobody tells it";
   ros1::TrainedModel of_paper = model();
   of_paper.encoding.mode = ros1::ModeField{"/state", "data"};
   EXPECT_EQ(ByPaper(of_paper).mode(0), "") << "the paper knows no modes";
 }
 
-TEST(Session, SaysWhoseDelaysAreNotWatchedNow) {
-  const std::vector<std::string> words = Quiet(modelOfAnswers()).disarmed();
-  EXPECT_NE(std::find(words.begin(), words.end(), "/b on /y after /a on /x"), words.end());
-  EXPECT_TRUE(ByPaper(model()).disarmed().empty());
+TEST(Session, SaysWhatIsWatchedLessNow) {
+  Quiet session(modelOfAnswers(2));
+  const auto says = [&](const std::string& words) {
+    const std::vector<std::string> all = session.watchedLess();
+    return std::find(all.begin(), all.end(), words) != all.end();
+  };
+  EXPECT_TRUE(says("/b on /y after /a on /x"));
+  for (std::int64_t stamp = 0; stamp < 20 * kSecond; stamp += kSecond / 5) {
+    if (stamp < 10 * kSecond || stamp >= 13 * kSecond) {
+      session.detector().add({stamp, session.typesOf({"/a", "/x"}).at(0)});
+    }
+    session.detector().add({stamp, session.typesOf({"/b", "/y"}).at(0)});
+  }
+  EXPECT_TRUE(says("/a on /x: silent for more than 4.0 s")) << "it has paused for 3.2 s";
+  EXPECT_TRUE(ByPaper(model()).watchedLess().empty());
 }
 
 }  // namespace

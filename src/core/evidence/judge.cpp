@@ -79,7 +79,7 @@ class Judge : public core::Judge {
   std::optional<LastingMode> mode(std::int64_t now) const override {
     return scorer_.heard().lasting(now);
   }
-  std::vector<Disarmed> disarmed() const override;
+  std::vector<WatchedLess> watchedLess() const override;
   void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
   void standStill(const Waiting& pause, std::int64_t until) override;
   void accept(const Acceptances& accepted) override {
@@ -322,14 +322,16 @@ void Judge::takeBack(Excused reason) {
   }
 }
 
-std::vector<Disarmed> Judge::disarmed() const {
-  std::vector<Disarmed> disarmed;
+std::vector<WatchedLess> Judge::watchedLess() const {
+  std::vector<WatchedLess> less;
   for (std::size_t track = 0; limits_ && track < model_->tracks().size(); ++track) {
-    if (!std::isnan(limits_->tracks[track]) && !scorer_.isArmed(track)) {
-      disarmed.push_back({model_->tracks()[track].to, model_->tracks()[track].from});
+    const double raised_by = scorer_.raisedBy(track);
+    if (!std::isnan(limits_->tracks[track]) && raised_by > 0) {
+      less.push_back({model_->tracks()[track].to, model_->tracks()[track].from,
+                      limits_->tracks[track] + raised_by});
     }
   }
-  return disarmed;
+  return less;
 }
 
 std::string Judge::evidenceOf(const Judgement& judgement) const {

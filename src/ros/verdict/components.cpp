@@ -111,7 +111,7 @@ self_awareness::Components toComponents(const CommunicationState& state, const G
     stranger.kind = self_awareness::SelfAwareness::STRANGER;
     message.strangers.push_back(stranger);
   }
-  message.delays_not_watched = state.disarmed;
+  message.watched_less = state.watched_less;
   message.off_together = state.mode;
   return message;
 }

@@ -160,7 +160,7 @@ std::string whyNotWatched(const core::evidence::Coverage& component) {
 std::vector<std::pair<std::string, std::vector<std::string>>> listsOf(
     const CommunicationState& state) {
   return {{"not watched", notWatched(state)},
-          {"delays not watched now", state.disarmed},
+          {"watched less now", state.watched_less},
           {"nobody subscribed in training", unheard(state)},
           {"not accepted, events so far", strangers(state)},
           {"accepted", state.accepted},

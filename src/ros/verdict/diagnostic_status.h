@@ -43,10 +43,9 @@ struct CommunicationState {
     std::uint64_t events = 0;  ///< so far
   };
   std::vector<Stranger> strangers;
-  /// Whose delays are not watched now, and after whom, in words.
-  std::vector<std::string> disarmed;
-  std::vector<std::string> accepted;  ///< as normal, in words
-  std::vector<std::string> mode;      ///< components that are off together now, as is accepted
+  std::vector<std::string> watched_less;  ///< now, in words
+  std::vector<std::string> accepted;      ///< as normal, in words
+  std::vector<std::string> mode;          ///< components that are off together now, as is accepted
   /// What is accepted of components that the model knows, in words.
   std::map<std::string, std::string> accepted_of;
   /// How often messages came in training [Hz], by component and topic; empty: not known.

@@ -45,7 +45,7 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
     for style, title, names in (
             ('faint', 'not watched',
              [f'{each.name} ({each.not_watched})' for each in known if each.not_watched]),
-            ('faint', 'delays not watched now', said.listed('delays_not_watched')),
+            ('faint', 'watched less now', said.listed('watched_less')),
             ('', 'off together, as is accepted', said.listed('off_together')),
             ('', 'new, not accepted', [' on '.join(filter(None, (each.component, each.topic)))
                                        for each in said.strangers])):

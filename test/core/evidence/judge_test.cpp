@@ -74,16 +74,16 @@ TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
   }
 }
 
-TEST_F(EvidenceJudgeTest, SaysWhatIsNotWatchedNow) {
-  EXPECT_TRUE(newJudge(std::nullopt)->disarmed().empty()) << "nothing is judged";
-  EXPECT_TRUE(newJudge(limits_)->disarmed().empty()) << "no limit, not judged";
+TEST_F(EvidenceJudgeTest, SaysWhatIsWatchedLessNow) {
+  EXPECT_TRUE(newJudge(std::nullopt)->watchedLess().empty()) << "nothing is judged";
+  EXPECT_TRUE(newJudge(limits_)->watchedLess().empty()) << "no limit, not judged";
   limit(kPairs, kB, kA) = 14;
   start();
-  ASSERT_EQ(judge_->disarmed().size(), 1U);
-  EXPECT_EQ(judge_->disarmed()[0].id, kB);
-  EXPECT_EQ(judge_->disarmed()[0].after, kA);
+  ASSERT_EQ(judge_->watchedLess().size(), 1U);
+  EXPECT_EQ(judge_->watchedLess()[0].id, kB);
+  EXPECT_EQ(judge_->watchedLess()[0].after, kA);
   feed(0);
-  EXPECT_TRUE(judge_->disarmed().empty());
+  EXPECT_TRUE(judge_->watchedLess().empty());
 }
 
 TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {

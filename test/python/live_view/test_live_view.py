@@ -102,7 +102,7 @@ def test_it_shows_how_soon_a_death_is_found_also_when_it_is_asked(
 
 @pytest.mark.parametrize('key, lists', [
     ('off together, as is accepted', {'off_together': ['/arm', '/base']}),
-    ('delays not watched now', {'delays_not_watched': ['/arm', '/base']}),
+    ('watched less now', {'watched_less': ['/arm', '/base']}),
     ('new, not accepted', {'strangers': [stranger('', '/arm'), stranger('/base', '')]}),
     ('muted', {'mutes': ['/arm, /base']})])
 def test_it_shows_who_is_not_judged_as_usual(key: str, lists: Dict[str, Any]) -> None:

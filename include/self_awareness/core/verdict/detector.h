@@ -108,8 +108,8 @@ class Detector : private WindowObserver {
   bool started() const { return windows_.lastStamp().has_value(); }
   /// The mode that the robot is in, up to now [ns]; none: as Judge::mode().
   std::optional<LastingMode> mode(std::int64_t now) const { return judge_->mode(now); }
-  /// Delays that are not watched now; as Judge::disarmed().
-  std::vector<Disarmed> disarmed() const { return judge_->disarmed(); }
+  /// As Judge::watchedLess().
+  std::vector<WatchedLess> watchedLess() const { return judge_->watchedLess(); }
   /// Events since the start that training never saw, by id; without what is accepted.
   std::map<EventId, std::uint64_t> unknown() const;
 

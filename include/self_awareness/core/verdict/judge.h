@@ -43,10 +43,12 @@ struct Judgement {
   std::string waiting;
 };
 
-/// Delays that do not count until they have been as in training (docs/method.md, section 3.7).
-struct Disarmed {
+/// What is watched less than was calibrated, by what it has shown since (docs/method.md, section
+/// 3.7): who pauses; or delays, which do not count until they have been as in training.
+struct WatchedLess {
   EventId id = 0;     ///< the event type that comes
-  EventId after = 0;  ///< the one that it comes after
+  EventId after = 0;  ///< the one that it comes after; itself: it pauses
+  double limit = 0;   ///< of its silence, now [s]; infinite: its delays do not count
 };
 
 /// Of which windows a judge names suspects: naming them takes time.
@@ -75,8 +77,8 @@ class Judge {
   /// The mode that the robot is in, up to now [ns], whether the model knows it or not; none: it is
   /// not known, or this judge knows no modes.
   virtual std::optional<LastingMode> mode(std::int64_t /*now*/) const { return std::nullopt; }
-  /// What the judge does not watch now, though it did, or will. Who judges all the time has none.
-  virtual std::vector<Disarmed> disarmed() const { return {}; }
+  /// What is watched less now. A judge that learns nothing in operation has none.
+  virtual std::vector<WatchedLess> watchedLess() const { return {}; }
   /// Takes note that this program stood still: what came meanwhile was received late, or never.
   /// What is unusual up to `until` [ns] says nothing; who was silent before is silent still.
   /// @param pause told in place of hear()

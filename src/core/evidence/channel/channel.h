@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,6 +23,8 @@
 namespace self_awareness::core::evidence {
 
 class Model;
+
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 /// What a channel chooses its tracks by.
 struct Choice {
@@ -70,8 +73,9 @@ class ChannelState {
   virtual void closeWindow(const Heard& heard, std::vector<double>& evidence) = 0;
   /// Since when what a track sees has been so [ns]; none: it does not know.
   virtual std::optional<std::int64_t> onset(std::size_t /*track*/) const { return std::nullopt; }
-  /// Whether a track counts: it has been as in training.
-  virtual bool isArmed(std::size_t /*track*/) const { return true; }
+  /// By how much a track may exceed its limit, by what it has shown in operation [its unit];
+  /// kUnlimited: it does not count.
+  virtual double raisedBy(std::size_t /*track*/) const { return 0; }
   /// Whether further windows would say nothing new of a track that is beyond its limit.
   virtual bool isCertain(std::size_t /*track*/, double /*limit*/, const Heard& /*heard*/) const {
     return false;

@@ -136,8 +136,8 @@ class CompanyState : public ChannelState {
       arming_[number].forget();
     }
   }
-  bool isArmed(std::size_t track) const override {
-    return arming_[expected_.numberOf(track)].armed();
+  double raisedBy(std::size_t track) const override {
+    return arming_[expected_.numberOf(track)].armed() ? 0 : kUnlimited;
   }
   void capAt(const std::vector<double>& limits) override {
     for (std::size_t number = 0; number < arming_.size(); ++number) {

@@ -137,7 +137,9 @@ class OwedState : public ChannelState {
     }
   }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
-  bool isArmed(std::size_t track) const override { return answerOf(track).arming.armed(); }
+  double raisedBy(std::size_t track) const override {
+    return answerOf(track).arming.armed() ? 0 : kUnlimited;
+  }
   std::optional<std::int64_t> onset(std::size_t track) const override {
     const Answer& answer = answerOf(track);
     return answer.requests > 1 || answer.step == 0 ? answer.since : answer.sum.since;

@@ -80,7 +80,9 @@ class PairsState : public ChannelState {
   std::optional<std::int64_t> onset(std::size_t track) const override {
     return pairOf(track).sum.since;
   }
-  bool isArmed(std::size_t track) const override { return pairOf(track).armed; }
+  double raisedBy(std::size_t track) const override {
+    return pairOf(track).armed ? 0 : kUnlimited;
+  }
   void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
                Suspect& suspect) const override;
 

@@ -77,8 +77,8 @@ class Scorer {
   /// Whether the event that was added last may have waited while the whole robot stood still, or
   /// the machine had no time.
   bool stalled() const { return stalled_; }
-  /// Whether a track counts: it has been as in training.
-  bool isArmed(std::size_t track) const { return stateOf(track).isArmed(track); }
+  /// As ChannelState::raisedBy().
+  double raisedBy(std::size_t track) const { return stateOf(track).raisedBy(track); }
   /// Whether a track that is beyond its limit is so beyond all doubt.
   bool isCertain(std::size_t track, double limit) const;
   /// Since when what a track sees has been so [ns]: a silence since the last event, a sum since it

@@ -40,9 +40,12 @@ class SilenceState : public ChannelState {
       evidence[track] = std::max(silence.age - silence.more, 0.0);
     }
   }
+  double raisedBy(std::size_t track) const override {
+    return silences_[model_.tracks()[track].to].more;
+  }
   bool isCertain(std::size_t track, double limit, const Heard& heard) const override {
-    const EventId id = model_.tracks()[track].to;
-    return toSeconds(heard.age(id) - heard.window()) > limit + silences_[id].more;
+    return toSeconds(heard.age(model_.tracks()[track].to) - heard.window()) >
+           limit + raisedBy(track);
   }
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
                Suspect& suspect) const override {

@@ -120,9 +120,9 @@ TEST_F(CompanyTest, ThatItComesAfterAllIsNewsOnce) {
   }
   scorer_->forget(kA);
   EXPECT_EQ(evidenceAt(now += kWindow), 0);
-  EXPECT_TRUE(scorer_->isArmed(track_)) << "it has not come";
+  EXPECT_EQ(scorer_->raisedBy(track_), 0) << "it has not come";
   EXPECT_EQ(goOn(30), 30);
-  EXPECT_FALSE(scorer_->isArmed(track_));
+  EXPECT_EQ(scorer_->raisedBy(track_), kUnlimited);
   for (int k = 0; k < 2 * kArming; ++k) {
     EXPECT_EQ(goOn(10), 0) << "pauses as in training";
   }

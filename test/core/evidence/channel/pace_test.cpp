@@ -165,7 +165,7 @@ TEST_F(PaceTest, AnotherPaceIsToldForAsLongAsItLasts) {
   wait(kPeriod, 10);
   wait(kLong, 300);
   EXPECT_GT(slower(), 0) << "two minutes later";
-  EXPECT_TRUE(scorer_.isArmed(slower_));
+  EXPECT_EQ(scorer_.raisedBy(slower_), 0);
   wait(kPeriod, 60);
   EXPECT_EQ(slower(), 0);
 }

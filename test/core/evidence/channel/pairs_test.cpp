@@ -34,7 +34,7 @@ class PairsTest : public FollowedTest {
     return abnormal;
   }
 
-  bool isWatched() const { return scorer_.isArmed(pair_); }
+  bool isWatched() const { return scorer_.raisedBy(pair_) == 0; }
 
   std::size_t pair_ = track(kPairs, kB, kA);
 };

@@ -65,7 +65,9 @@ TEST_F(SilenceTest, ThatOneWhoPausesComesAfterAllIsNewsOnce) {
   };
   EXPECT_DOUBLE_EQ(beSilent(5 * kSecond), 5);
   EXPECT_DOUBLE_EQ(beSilent(3 * kSecond), 3) << "the one before was too long to be a pause";
+  EXPECT_EQ(scorer_.raisedBy(overdue_), 0);
   EXPECT_LT(beSilent(3500 * kMillisecond), 2) << "it may pause for 3 s, and a quarter more";
+  EXPECT_NEAR(scorer_.raisedBy(overdue_), 1.25 * 3 - 2, 0.2);
   EXPECT_GT(beSilent(4 * kSecond), 2);
   restart();
   EXPECT_DOUBLE_EQ(beSilent(3 * kSecond), 3);
