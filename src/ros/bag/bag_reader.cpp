@@ -181,6 +181,9 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
         progress(done, summary_.messages);
       }
       ++done;
+      if (entry.stamp > stamps.last) {
+        continue;
+      }
       auto& [connection_encoder, reader, link] = all[entry.connection];
       if (!connection_encoder) {
         if (link && stamps.holds(entry.stamp)) {

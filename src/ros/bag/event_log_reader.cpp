@@ -319,7 +319,8 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
         messages.fail("an event of a type that it does not name");
       }
       const bool is_held = stamps.holds(event.stamp);
-      if (!types[event.id] || (!is_held && !core::isLatched(*types[event.id]))) {
+      if (!types[event.id] || event.stamp > stamps.last ||
+          (!is_held && !core::isLatched(*types[event.id]))) {
         continue;
       }
       std::optional<core::EventId>& id = known[event.id];

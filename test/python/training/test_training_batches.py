@@ -7,10 +7,14 @@ from pathlib import Path
 from typing import Any, Callable, List, Optional, Tuple
 
 import pytest
-from conftest import error_of, jittery_robot, learned, train_tuned, trained, write_bag
+import rosbag
+import rospy
+from conftest import (error_of, jittery_robot, learned, printed_by, put, train_tuned, trained,
+                      write_bag)
+from std_msgs.msg import String
 
 from self_awareness import EncodingRules, EvidenceModel, Learner, TrainedModel, Tuning, read_events
-from self_awareness.commands import train
+from self_awareness.commands import convert, train
 from self_awareness.parts import BagPart
 from self_awareness.recordings import RecordingEvents
 from self_awareness.training import many_bags
@@ -223,6 +227,20 @@ def test_the_tuning_of_a_model_stays_when_more_is_added(five: List[str], tmp_pat
     model = trained(five[2:4], tmp_path / 'm', '--add-to', base, '--jobs', '2')
     assert model.tuning == TrainedModel.load(base).tuning != Tuning()
     assert relations(model) == 0 < relations(trained(five[:4], tmp_path / 'default'))
+
+
+def test_what_is_latched_after_the_end_is_no_part_of_it(tmp_path: Path) -> None:
+    bag, log = tmp_path / 'a.bag', tmp_path / 'a.log'
+    with rosbag.Bag(str(bag), 'w') as written:
+        for stamp, source, topic in jittery_robot(1000.0, 60.0, 1):
+            put(written, source, topic, String('x'), stamp)
+        header = {'topic': '/lamp', 'type': String._type, 'md5sum': String._md5sum,
+                  'message_definition': String._full_text, 'callerid': '/lamp', 'latching': '1'}
+        written.write('/lamp', String('on'), rospy.Time(1050), connection_header=header)
+    printed_by(convert, [str(bag), '-o', str(log)])
+    for path in (bag, log):
+        model = trained([str(path)], tmp_path / 'm', '--end', '40')
+        assert '/lamp' not in {each.source for each in model.event_types}
 
 
 @pytest.mark.parametrize('option', [('--bin', '0.01'), ('--window', '0.1'), ('--horizon', '1'),
