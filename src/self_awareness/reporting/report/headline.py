@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Sequence
 
 from self_awareness import sentence
-from self_awareness.reporting.report.intervals import Interval, NamedSuspect
+from self_awareness.reporting.report.intervals import SILENCES, Interval, NamedSuspect
 
 _SOON_S = 1.0
 
@@ -28,7 +28,7 @@ def headline(main: Interval, together: Sequence[str], times: int) -> str:
     """
     first = main.first
     silence, back = main.silence, ''
-    if silence is None and first is not None and not first.of.reason.after:
+    if silence is None and first is not None and _is_its_silence(first):
         silence = first.silence
         back = '' if silence is None else _back(main, together)
     elif silence is not None and silence.back is not None:
@@ -50,6 +50,13 @@ def headline(main: Interval, together: Sequence[str], times: int) -> str:
     if main.before_end is not None:
         text = f'{text}, {main.before_end:.1f} s before the recording ended'
     return _as_sentence(text)
+
+
+def _is_its_silence(first: NamedSuspect) -> bool:
+    """Return whether a silence is what happened: not if an answer is missing, nor if it was a
+    short one of who is unusual otherwise."""
+    is_over = first.silence is not None and first.silence.back is not None
+    return not first.of.reason.after and (first.of.reason.kind in SILENCES or not is_over)
 
 
 def of_another(suspect: NamedSuspect) -> str:

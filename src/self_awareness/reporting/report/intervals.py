@@ -19,7 +19,7 @@ MOST_LISTED = 400  # alarms and suspicions that are listed, at most so many; ala
 _CLEARLY_LONGER = 3
 """A pause is a silence if it is so many times as long as the longest one in training."""
 
-_SILENCES = ('silent', 'topic silent', 'unanswered')
+SILENCES = ('silent', 'topic silent', 'unanswered')
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ def _silence_of(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Sile
     come without its question.
     """
     reason = suspect.reason
-    is_silence = reason.kind in _SILENCES
+    is_silence = reason.kind in SILENCES
     if reason.kind in ('never came', 'stranger') or (reason.after and not is_silence):
         return None
     looks_back = 0.0 if math.isnan(reason.lasted) else reason.lasted
