@@ -87,6 +87,14 @@ def test_others_that_are_to_blame_for_a_suspicion_of_their_own_are_told() -> Non
         '/b (/t) sends too seldom 2 times, the longest from 53.0 s to 70.0 s.']
 
 
+def test_who_is_slow_did_not_only_fall_silent_for_a_moment() -> None:
+    slow = [suspect('/a', 'sends too seldom', Silence(20.0, 20.5), kind='slow')]
+    assert headline(interval(8.5, 30.0, slow), [], 1) == (
+        '/a (/t) sends too seldom from 8.5 s to 30.0 s.')
+    dies = [suspect('/a', 'stopped sending', Silence(20.0, None), kind='slow')]
+    assert headline(interval(8.5, 30.0, dies), [], 1) == '/a (/t) stopped sending at 20.0 s.'
+
+
 def test_only_who_did_not_come_back_has_stopped() -> None:
     gone = [suspect(name, 'stopped sending', Silence(8.0, None)) for name in ('/a', '/b')]
     assert headline(interval(8.5, 20.0, gone, cleared=False), [], 1) == (
