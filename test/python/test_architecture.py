@@ -36,8 +36,8 @@ ROOMS: Dict[str, Set[str]] = {
 # counts, and with it the format of models, is fixed; the promise is a formula; the rest is how
 # something is computed, or put in words.
 BESIDE_TUNING: Dict[str, Set[str]] = {
-    'what is counted': {'kAhead', 'kAttributesFrom', 'kDelayBins', 'kFirstEdge', 'kLongestGaps',
-                        'kPriorCount', 'kRateSpan', 'kSpan', 'kSpanOfAge'},
+    'what is counted': {'kAhead', 'kDelayBins', 'kFirstEdge', 'kLongestGaps', 'kPriorCount',
+                        'kRateSpan', 'kSettled', 'kSpan', 'kSpanOfAge'},
     'what is promised': {'kBudget', 'kHoursOfRobots', 'kQuantile', 'kQuietest', 'kRaised'},
     'what info says': {'kFalseAlarms', 'kFarLater', 'kFoundLate', 'kGoesOver', 'kLongestPause'},
     'multiples of kRateSpan': {'kHold', 'kKept', 'kLongEnough', 'kOneCause', 'kRestart'},

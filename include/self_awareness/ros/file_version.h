@@ -9,7 +9,7 @@ namespace self_awareness::ros1 {
 
 /// Version of the method (docs/method.md): a new one where counts, limits or verdicts are others.
 /// test/python/evaluation/test_method_version.py tells that they are.
-constexpr std::uint32_t kMethod = 19;
+constexpr std::uint32_t kMethod = 20;
 
 /// What this program writes of a kind of file, and so what it reads (docs/monitor.md).
 struct FileKind {

@@ -1,6 +1,7 @@
 #include "self_awareness/core/evidence/channel/model.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <utility>
@@ -31,6 +32,7 @@ Model::Model(const Watched& watched, Learned learned)
     half_ = watched.halves.at(learned == Learned::kFirst ? 0 : 1);
   }
   numberComponents();
+  findOtherValues();
   for (EventId id = 0; id < size(); ++id) {
     gaps_.emplace_back(this->learned().type(id), this->learned().delays(id, id));
   }
@@ -51,6 +53,24 @@ void Model::numberComponents() {
       components_.push_back(name);
     }
     component_of_.push_back(number->second);
+  }
+}
+
+void Model::findOtherValues() {
+  std::map<EventType, std::vector<EventId>> values;  // by what has them
+  for (EventId id = 0; id < size(); ++id) {
+    if (!valueOf(vocabulary().at(id)).empty() && !vocabulary().tellsMode(id)) {
+      values[withoutValue(vocabulary().at(id)).value()].push_back(id);
+    }
+  }
+  in_place_of_.resize(size());
+  for (const auto& [type, ids] : values) {
+    for (const EventId id : ids) {
+      if (pauses(id)) {
+        std::copy_if(ids.begin(), ids.end(), std::back_inserter(in_place_of_[id]),
+                     [id = id](EventId other) { return other != id; });
+      }
+    }
   }
 }
 

@@ -193,6 +193,11 @@ OwedState::OwedState(const ExpectedAnswers& expected)
     const auto [channel, to, from] = model_.tracks()[track];
     asks_[from].asked.push_back(number);
     asks_[to].answered.push_back(number);
+    for (const EventId other : model_.inPlaceOf(to)) {
+      if (other != from) {
+        asks_[other].answered.push_back(number);
+      }
+    }
     Answer& answer = owed_.emplace_back();
     answer.track = track;
     answer.to = to;

@@ -11,6 +11,12 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+/// Whether it is a log line that warns, or tells of an error: that there is none is no fault.
+bool isComplaint(const EventType& type) {
+  const std::string level = valueOf(type);
+  return type.scope == kLogTopic && !level.empty() && level != "level=1" && level != "level=2";
+}
+
 class SilenceState : public ChannelState {
  public:
   SilenceState(const Model& model, const std::vector<std::size_t>& tracks)
@@ -21,7 +27,6 @@ class SilenceState : public ChannelState {
       silences_[model_.tracks()[track].to].limit = limits[track];
     }
   }
-  void disarm(EventId id) override { silences_[id].age = 0; }
   void restart() override {
     for (OfType& silence : silences_) {
       silence.age = 0;
@@ -32,11 +37,12 @@ class SilenceState : public ChannelState {
     for (const std::size_t track : tracks_) {
       const EventId id = model_.tracks()[track].to;
       OfType& silence = silences_[id];
-      if (heard.silence(id) < silence.lasted) {
+      const EventId last = lastOf(id, heard);
+      if (heard.silence(last) < silence.lasted) {
         learn(silence, id, toSeconds(heard.window()));
       }
-      silence.lasted = heard.silence(id);
-      silence.age = heard.hasSeen(id) ? toSeconds(heard.age(id)) : 0;
+      silence.lasted = heard.silence(last);
+      silence.age = heard.hasSeen(id) ? toSeconds(heard.age(last)) : 0;
       evidence[track] = std::max(silence.age - silence.more, 0.0);
     }
   }
@@ -44,7 +50,7 @@ class SilenceState : public ChannelState {
     return silences_[model_.tracks()[track].to].more;
   }
   bool isCertain(std::size_t track, double limit, const Heard& heard) const override {
-    return toSeconds(heard.age(model_.tracks()[track].to) - heard.window()) >
+    return toSeconds(heard.age(lastOf(model_.tracks()[track].to, heard)) - heard.window()) >
            limit + raisedBy(track);
   }
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
@@ -53,17 +59,17 @@ class SilenceState : public ChannelState {
     Reason& reason = suspect.reason;
     reason.kind = Kind::kSilent;
     reason.unit = unit::kSeconds;
-    reason.value = toSeconds(heard.silence(id));
+    const std::int64_t silence = heard.silence(lastOf(id, heard));
+    reason.value = toSeconds(silence);
     reason.lasted = reason.value;
     reason.usual = model_.meanGap(id) * 1e-9;
     reason.usual_shortest = model_.usualDelay(id, id, kUsualFrom) * 1e-9;
     reason.usual_longest = model_.usualDelay(id, id, kUsualTo) * 1e-9;
     // One start may have shown more than all others agree on.
     const std::vector<std::int64_t>& gaps = model_.statistics().type(id).longest_gaps;
-    const auto longer =
-        std::partition_point(gaps.begin(), gaps.end(),
-                             [&](std::int64_t gap) { return gap > heard.silence(id); }) -
-        gaps.begin();
+    const auto longer = std::partition_point(gaps.begin(), gaps.end(),
+                                             [&](std::int64_t gap) { return gap > silence; }) -
+                        gaps.begin();
     char text[120];
     std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f s, %s %.3f s",
                   reason.value, reason.usual,
@@ -82,13 +88,20 @@ class SilenceState : public ChannelState {
     std::int64_t lasted = 0;  // age, stalls and all [ns]
   };
 
+  /// What came last of an event type, and what was said in its place.
+  EventId lastOf(EventId id, const Heard& heard) const {
+    EventId last = id;
+    for (const EventId other : model_.inPlaceOf(id)) {
+      last = heard.lastSeen(other) > heard.lastSeen(last) ? other : last;
+    }
+    return last;
+  }
   /// A silence is over. That one who pauses exceeds its limit is news once: it may pause for so
   /// long. A much longer silence is another thing.
   void learn(OfType& silence, EventId id, double window) const {
     const Tuning& tuning = model_.tuning();
     const double limit = silence.limit + silence.more;
-    if (silence.age > limit && silence.age <= tuning.margin * limit &&
-        static_cast<double>(model_.longestGap(id)) > tuning.regular * model_.meanGap(id)) {
+    if (silence.age > limit && silence.age <= tuning.margin * limit && model_.pauses(id)) {
       silence.more = tuning.margin_of_silence * (silence.age + window) - window - silence.limit;
     }
   }
@@ -122,7 +135,7 @@ class ExpectedSilence : public Expectation {
 std::vector<Track> Silence::watch(const Choice& choice) const {
   std::vector<Track> tracks;
   for (EventId id = 0; id < choice.both.size(); ++id) {
-    if (choice.isJudged(id)) {
+    if (choice.isJudged(id) && !isComplaint(choice.both.vocabulary().at(id))) {
       tracks.push_back({this, id, id});
     }
   }

@@ -15,9 +15,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Lines of a log come in bursts.
-const std::string kLogTopic = "/rosout";
-
 /// All values of a sender on a topic, and how many messages had one of them.
 struct Topic {
   std::vector<EventId> ids;

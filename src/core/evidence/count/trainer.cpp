@@ -110,8 +110,10 @@ void Trainer::add(const Event& event) {
   const Event ran{event.stamp - stood_still_, event.id, event.attributes};
   if (last_stamp_) {
     closeWindows(ran.stamp);
-    recording_.longest_silence =
-        std::max(recording_.longest_silence, event.stamp - *last_stamp_ - stall);
+    if (*last_stamp_ - recording_.start >= kSettled) {  // it has settled
+      recording_.longest_silence =
+          std::max(recording_.longest_silence, event.stamp - *last_stamp_ - stall);
+    }
     recording_.longest_stall = std::max(recording_.longest_stall, stall);
     statistics_->addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
     newest_stamp_ = std::max(newest_stamp_, event.stamp);
@@ -134,7 +136,7 @@ void Trainer::add(const Event& event) {
     return;
   }
   counts_.add(ran.id);
-  countAttributes(ran, event.stamp >= *since_ + recording_.firsts[ran.id] + kAttributesFrom);
+  countAttributes(ran, event.stamp >= *since_ + recording_.firsts[ran.id] + kSettled);
   count(ran);
 }
 

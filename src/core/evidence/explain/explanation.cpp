@@ -196,6 +196,8 @@ std::vector<Explanation::Accused> Explanation::order(std::vector<Accused> accuse
   const std::vector<Accused> absent(ordered.begin(), absent_end);
   std::stable_partition(ordered.begin(), ordered.end(), [&](const Accused& each) {
     return each.wrong == Wrong::kOwn &&
+           std::none_of(absent.begin(), absent.end(),
+                        [&](const Accused& root) { return isRoot(root, each, window.causes); }) &&
            std::any_of(absent.begin(), absent.end(), [&](const Accused& victim) {
              return isRoot(each, victim, window.causes) &&
                     owesNothing(victim.main->id, each.main->id, window);

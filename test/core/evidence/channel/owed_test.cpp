@@ -53,6 +53,27 @@ TEST_F(OwedTest, RareRequestsAreCountedInSecondsSinceTheFirst) {
   EXPECT_EQ(evidenceAt(3000 * kSecond), 0) << "who was never heard owes nothing";
 }
 
+TEST_F(OwedTest, AGoalThatFailsIsAnAnswer) {
+  const std::vector<EventType> types{
+      kTypes[kA], {"/b", "/y", "T[status=3]"}, {"/b", "/y", "T[status=4]"}};
+  constexpr EventId kFailed = 2;
+  const auto start = [&](unsigned seed) {
+    const Events asked = irregular(kA, 0, 1600 * kSecond, 8 * kSecond, seed);
+    Events results = answers(kB, asked, 800 * kMillisecond);
+    for (std::size_t k = 0; k < results.size(); k += 100) {
+      results[k].id = kFailed;
+    }
+    return countsOf({later(together({asked, results}), seed * kStart)}, types);
+  };
+  TrackTest::learn(watch(start(10), start(20)), kDeadlines, kB, kA);
+  ASSERT_LT(track_, model_->tracks().size());
+  scorer_->add({0, kB});
+  scorer_->add({30 * kSecond, kA});
+  EXPECT_GT(evidenceAt(35 * kSecond), 0);
+  scorer_->add({36 * kSecond, kFailed});
+  EXPECT_EQ(evidenceAt(40 * kSecond), 0);
+}
+
 TEST_F(OwedTest, ThatAnAnswerComesAfterAllIsNewsOnce) {
   learn(8 * kSecond);
   scorer_->capAt(allLimits(*model_, 5));

@@ -71,6 +71,9 @@ TEST_F(SilenceTest, ThatOneWhoPausesComesAfterAllIsNewsOnce) {
   EXPECT_GT(beSilent(4 * kSecond), 2);
   restart();
   EXPECT_DOUBLE_EQ(beSilent(3 * kSecond), 3);
+  scorer_.capAt(allLimits(*model_, 20));
+  EXPECT_DOUBLE_EQ(beSilent(30 * kSecond), 30) << "it was gone";
+  EXPECT_LT(beSilent(30 * kSecond), 20) << "and came back: it may pause for so long";
 }
 
 TEST_F(TrackTest, ThatATimerComesAfterAllIsNewsAgain) {
@@ -81,6 +84,28 @@ TEST_F(TrackTest, ThatATimerComesAfterAllIsNewsAgain) {
     scorer_->add({stamp, kA});
     EXPECT_DOUBLE_EQ(evidenceAt(stamp + 900 * kMillisecond), 0.9);
   }
+}
+
+TEST_F(TrackTest, AnotherValueOfWhoPausesEndsItsSilence) {
+  const std::vector<EventType> types{{"/b", "/y", "T[status=3]"},
+                                     {"/b", "/y", "T[status=4]"},
+                                     {"/rosout", "/rosout", "L[level=4]"},
+                                     {"/rosout", "/rosout", "L[level=2]"}};
+  constexpr EventId kComplaint = 2;
+  const auto start = [&](std::int64_t number) {
+    return countsOf(
+        {later(atRandom(types.size(), 0, 900 * kSecond, 8 * kSecond, 7), number * kStart)}, types);
+  };
+  learn(watch(start(1), start(2)), kOverdue, kA, kA);
+  scorer_->add({0, kA});
+  EXPECT_DOUBLE_EQ(evidenceAt(20 * kSecond), 20);
+  scorer_->add({30 * kSecond, kB});
+  EXPECT_DOUBLE_EQ(evidenceAt(32 * kSecond), 2);
+  EXPECT_DOUBLE_EQ(reason().value, 2);
+  EXPECT_EQ(indexOf(model_->tracks(), kOverdue, kComplaint, kComplaint), model_->tracks().size())
+      << "that nobody complains is no fault";
+  EXPECT_LT(indexOf(model_->tracks(), kOverdue, kComplaint + 1, kComplaint + 1),
+            model_->tracks().size());
 }
 
 }  // namespace

@@ -218,6 +218,10 @@ TEST_F(ExplanationTest, WhoAnswersEverySecondMessageIsNotToBlameWhileTheseComeAt
   const Reached reached{{overdue(kB), 1.2}, {trackOf(kSlower, kA, kA), 1.2}};
   add({20100 * kMillisecond, kA});
   EXPECT_EQ(named(reached, 20290 * kMillisecond), (Ids{kA, kB}));
+  graph_->connect("/c", "/z", "/a");
+  EXPECT_EQ(named({reached[0], reached[1], {overdue(kC), 1.5}}, 20290 * kMillisecond),
+            (Ids{kC, kB, kA}))
+      << "why they come at half the rate is gone";
   add({20300 * kMillisecond, kA});
   EXPECT_EQ(named(reached, 20340 * kMillisecond), (Ids{kA, kB})) << "it has time to answer";
   EXPECT_EQ(named(reached, 20400 * kMillisecond), (Ids{kB, kA}));

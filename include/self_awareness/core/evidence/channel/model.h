@@ -80,7 +80,13 @@ class Model {
   bool isRare(EventId id, std::int64_t silence) const;
   /// Longest gap between two events of the type in training [ns]; 0 if there was none.
   std::int64_t longestGap(EventId id) const { return statistics_.type(id).longestGap(); }
-  /// The same, and as long as things that happen at one moment are apart, kRateSpan [ns].
+  /// Whether it pauses, rather than comes in regular gaps.
+  bool pauses(EventId id) const {
+    return static_cast<double>(longestGap(id)) > tuning_.regular * meanGap(id);
+  }
+  /// What its sender may say in its place: the other values on the topic, if it pauses.
+  const std::vector<EventId>& inPlaceOf(EventId id) const { return in_place_of_[id]; }
+  /// The same as longestGap(), and as long as things that happen at one moment are apart, kRateSpan [ns].
   std::int64_t longestPause(EventId id) const { return longestGap(id) + kRateSpan; }
   /// Longest gap, or what recordings cut off of a type that is often silent [ns]:
   /// heads_and_tails.h
@@ -102,6 +108,7 @@ class Model {
 
  private:
   void numberComponents();
+  void findOtherValues();
   void letChannelsExpect(const Halves& halves);
 
   Statistics statistics_;           // of both halves
@@ -110,7 +117,8 @@ class Model {
   Tuning tuning_;
   std::vector<std::string> components_;
   std::vector<std::size_t> component_of_;  // by id
-  std::vector<GapDistribution> gaps_;      // by id
+  std::vector<std::vector<EventId>> in_place_of_;  // by id
+  std::vector<GapDistribution> gaps_;              // by id
   std::vector<std::unique_ptr<const Expectation>> expectations_;
   std::vector<std::size_t> expectation_of_;  // index of its channel's, by track
   std::vector<Finding> findings_;            // by track

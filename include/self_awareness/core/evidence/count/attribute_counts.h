@@ -8,10 +8,11 @@
 
 namespace self_awareness::core::evidence {
 
-/// An event type's first messages may be odd, as those of a driver that starts: for so long after
-/// its first one in a recording [ns], attributes do not count. The detector forgets them as well
-/// (docs/method.md, section 4.4).
-constexpr std::int64_t kAttributesFrom = 5000000000;
+/// The first messages may be odd, as those of a driver that starts: for so long after the first one
+/// of an event type in a recording [ns], its attributes do not count, and for so long after the
+/// first one of all, no silence of all. The detector forgets them as well (docs/method.md, section
+/// 4.4).
+constexpr std::int64_t kSettled = 5000000000;
 
 /// Numbers of messages by class; classes without any are left out.
 using ClassCounts = std::map<std::uint8_t, std::uint64_t>;
@@ -22,7 +23,7 @@ std::uint64_t total(const ClassCounts& counts);
 std::uint8_t quantile(const ClassCounts& counts, double share);
 
 /// What training counts of the attributes of an event type's messages (docs/method.md,
-/// section 3.10). Of those in the first kAttributesFrom of a recording, it only knows that they
+/// section 3.10). Of those in the first kSettled of a recording, it only knows that they
 /// came. The counts of two trainings add up.
 struct AttributeCounts {
   ClassCounts ages;   ///< of messages with a header: Attributes::age
