@@ -86,7 +86,8 @@ class Model {
   }
   /// What its sender may say in its place: the other values on the topic, if it pauses.
   const std::vector<EventId>& inPlaceOf(EventId id) const { return in_place_of_[id]; }
-  /// The same as longestGap(), and as long as things that happen at one moment are apart, kRateSpan [ns].
+  /// The same as longestGap(), and as long as things that happen at one moment are apart,
+  /// kRateSpan [ns].
   std::int64_t longestPause(EventId id) const { return longestGap(id) + kRateSpan; }
   /// Longest gap, or what recordings cut off of a type that is often silent [ns]:
   /// heads_and_tails.h
@@ -116,7 +117,7 @@ class Model {
   std::vector<Track> tracks_;
   Tuning tuning_;
   std::vector<std::string> components_;
-  std::vector<std::size_t> component_of_;  // by id
+  std::vector<std::size_t> component_of_;          // by id
   std::vector<std::vector<EventId>> in_place_of_;  // by id
   std::vector<GapDistribution> gaps_;              // by id
   std::vector<std::unique_ptr<const Expectation>> expectations_;

@@ -8,10 +8,10 @@
 
 namespace self_awareness::core::evidence {
 
-/// The first messages may be odd, as those of a driver that starts: for so long after the first one
-/// of an event type in a recording [ns], its attributes do not count, and for so long after the
-/// first one of all, no silence of all. The detector forgets them as well (docs/method.md, section
-/// 4.4).
+/// The first messages may be odd, as those of a driver that starts: for so long after the first
+/// one of an event type in a recording [ns], its attributes do not count, and for so long after
+/// the first one of all, no silence of all. The detector forgets them as well (docs/method.md,
+/// section 4.4).
 constexpr std::int64_t kSettled = 5000000000;
 
 /// Numbers of messages by class; classes without any are left out.
