@@ -72,7 +72,7 @@ class ChaosTest(TrainedCase):
         victim.send(signal.SIGKILL)
         alarm = listener.await_alarm(30)
         self.assertEqual((alarm.suspects[0].source, alarm.suspects[0].scope),
-                         ('/driver', '/scan'))
+                         ('/driver', '/scan'), alarm)
 
     # Names and messages
 
