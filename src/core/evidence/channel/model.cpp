@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/evidence/channel/channels.h"
+#include "core/evidence/channel/topic_values.h"
 #include "core/evidence/count/log_bins.h"
 #include "core/evidence/watch/heads_and_tails.h"
 
@@ -57,14 +58,8 @@ void Model::numberComponents() {
 }
 
 void Model::findOtherValues() {
-  std::map<EventType, std::vector<EventId>> values;  // by what has them
-  for (EventId id = 0; id < size(); ++id) {
-    if (!valueOf(vocabulary().at(id)).empty() && !vocabulary().tellsMode(id)) {
-      values[withoutValue(vocabulary().at(id)).value()].push_back(id);
-    }
-  }
   in_place_of_.resize(size());
-  for (const auto& [type, ids] : values) {
+  for (const auto& [type, ids] : valuesByTopic(vocabulary())) {
     for (const EventId id : ids) {
       if (pauses(id)) {
         std::copy_if(ids.begin(), ids.end(), std::back_inserter(in_place_of_[id]),

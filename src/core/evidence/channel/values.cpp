@@ -4,12 +4,12 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <map>
 #include <string>
 #include <utility>
 
 #include "core/evidence/channel/share.h"
 #include "core/evidence/channel/sum.h"
+#include "core/evidence/channel/topic_values.h"
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
@@ -23,20 +23,14 @@ struct Topic {
 
 /// All topics of a few values: who has more says what it likes.
 std::vector<Topic> topicsIn(const Statistics& counts, const Tuning& tuning) {
-  std::map<EventType, Topic> by_type;
-  for (EventId id = 0; id < counts.size(); ++id) {
-    const EventType& type = counts.vocabulary().at(id);
-    if (!valueOf(type).empty() && !counts.vocabulary().tellsMode(id) && type.scope != kLogTopic) {
-      Topic& topic = by_type[withoutValue(type).value()];
-      topic.ids.push_back(id);
-      topic.messages += counts.type(id).events;
-    }
-  }
   std::vector<Topic> all;
-  all.reserve(by_type.size());
-  for (auto& [type, topic] : by_type) {
-    if (static_cast<double>(topic.ids.size()) <= tuning.most_values) {
-      all.push_back(std::move(topic));
+  for (auto& [type, ids] : valuesByTopic(counts.vocabulary())) {
+    if (type.scope != kLogTopic && static_cast<double>(ids.size()) <= tuning.most_values) {
+      Topic& topic = all.emplace_back();
+      for (const EventId id : ids) {
+        topic.messages += counts.type(id).events;
+      }
+      topic.ids = std::move(ids);
     }
   }
   return all;
