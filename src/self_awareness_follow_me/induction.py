@@ -21,7 +21,7 @@ from self_awareness_follow_me.faults import INDUCED_FAULT
 from self_awareness_follow_me.scenario import Scenario
 
 _CALLER_ID = '/induce'
-_WITHIN_S = 5.0
+_WITHIN_S = 5.0  # the robot answers, and a node ends
 
 
 class InduceError(ValueError):
@@ -124,7 +124,11 @@ def intruding(effect: Intruder, namespace: str = '', scenario: Optional[Path] = 
             raise InduceError(f'the node {effect.spec.name} ended by itself, see above')
     finally:
         process.terminate()
-        process.wait()
+        try:
+            process.wait(_WITHIN_S)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
 
 
 @contextlib.contextmanager

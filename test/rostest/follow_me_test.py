@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
 import time
+import traceback
 import unittest
 from functools import partial
 from itertools import chain
 from statistics import median
+from types import FrameType
 from typing import Callable, Dict, List, Optional, Set
 
 import rosgraph
@@ -27,12 +30,21 @@ _WINDOW_S = 5.0
 # Passes the stamp of its input on, which tells how long it took.
 _STAMPED = 'legs'
 # Generous: 15 processes start on a machine that may be busy with other things.
-_DEADLINE_S = 90.0
+_DEADLINE_S = 45.0
+# Of one test. All of them together take less than what the .test file allows: so a test that waits
+# for what never comes, or hangs, says so itself.
+_TEST_S = 80
 
 
 def wait_for(condition: Callable[[], bool], what: str) -> None:
     """Wait until the condition holds; fail with `what` if that takes too long."""
     await_condition(what, condition, _DEADLINE_S)
+
+
+def _hangs(_: int, frame: Optional[FrameType]) -> None:
+    calls = traceback.extract_stack(frame)[-8:]
+    raise AssertionError(f'not within {_TEST_S} s; it is in ' + ', '.join(
+        f'{call.name} ({os.path.basename(call.filename)}:{call.lineno})' for call in calls))
 
 
 class Listener:
@@ -82,6 +94,11 @@ class FollowMeTest(unittest.TestCase):
     def setUpClass(cls) -> None:
         cls.scenario = load_scenario()
         cls.listener = Listener(f'/{cls.namespace}/', cls.scenario)
+
+    def setUp(self) -> None:
+        signal.signal(signal.SIGALRM, _hangs)
+        signal.alarm(_TEST_S)
+        self.addCleanup(signal.alarm, 0)
 
     def _node(self, name: str) -> str:
         return f'/{self.namespace}/{name}'

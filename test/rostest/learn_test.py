@@ -81,9 +81,7 @@ class LearnedTest(LearnCase):
             self.assertEqual([name for name in sources if 'self_awareness' in name], [])
 
             os.kill(pid_of('/player'), signal.SIGKILL)
-            alarm = listener.await_alarm()
-            self.assertEqual(alarm.suspects[0].source, '/player')
-            self.assertEqual(alarm.suspects[0].scope, '/scan')
+            listener.await_culprit('/player', '/scan')
             self.check_respawned(listener)
 
     def check_respawned(self, listener: MonitorListener) -> None:

@@ -240,8 +240,9 @@ class MonitorListener:
 
     @property
     def errors(self) -> List[str]:
-        """What alarms said."""
-        return [alarm.message for alarm in self.alarms if alarm.level == SelfAwareness.ERROR]
+        """What alarms said, but that the machine is busy: beside other tests, it is."""
+        return [alarm.message for alarm in self.alarms if alarm.level == SelfAwareness.ERROR
+                and alarm.kind != SelfAwareness.BUSY_MACHINE]
 
     def diagnostics(self, task: str) -> List[DiagnosticStatus]:
         """All statuses so far of one task: 'communication', 'monitor' or a component."""
@@ -294,12 +295,30 @@ class MonitorListener:
             lambda: next((s for s in self.statuses[seen:] if not s.settling), None), timeout)
 
     def await_alarm(self, timeout: float = 20) -> SelfAwareness:
-        """Waits for an alarm that it has not returned before; it may have been raised already."""
+        """Waits for an alarm that it has not returned before; it may have been raised already.
+
+        On a busy machine, an alarm may say so first, and later who died.
+        """
         alarm = await_condition(
             'an alarm', lambda: next((a for a in self.alarms if a.level == SelfAwareness.ERROR
-                                      and a.alarm not in self._awaited), None), timeout)
+                                      and a.alarm not in self._awaited
+                                      and (a.kind != SelfAwareness.BUSY_MACHINE or a.suspects)),
+                                     None), timeout)
         self._awaited.add(alarm.alarm)
         return alarm
+
+    def await_culprit(self, source: str, topic: str, timeout: float = 20) -> None:
+        """Waits until an alarm names a node first; no alarm may have named another one before,
+        but one that says that the machine is busy."""
+        def named() -> Optional[SelfAwareness]:
+            return next((a for a in self.alarms if a.level == SelfAwareness.ERROR and a.suspects
+                         and (a.suspects[0].source, a.suspects[0].scope) == (source, topic)), None)
+        culprit = await_condition('an alarm that names {}'.format(source), named, timeout)
+        before = self.alarms[:self.alarms.index(culprit)]
+        others = [a for a in before if a.level == SelfAwareness.ERROR
+                  and a.kind != SelfAwareness.BUSY_MACHINE]
+        if others:
+            raise AssertionError('an alarm named another one first: {}'.format(others))
 
 
 def operation(components: Iterable[Tuple[str, str, float]], length: float,
