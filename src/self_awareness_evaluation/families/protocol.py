@@ -9,10 +9,11 @@ import numpy as np
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.robot import WARNING
-from self_awareness_evaluation.families.scene import (AFTER_CRASH, CRASH, FAILS, FLOOD, HALF_RATE,
-                                                      LATE, LOAD, LONGEST_START_S, LOSSES, MISSES,
-                                                      NOTHING, OLD, OTHER, RESTART, SILENT, SLOWER,
-                                                      STALL, STARVED, STOP, Fault)
+from self_awareness_evaluation.families.scene import (AFTER_CRASH, CRASH, DOUBLE_RATE, FAILS,
+                                                      FLOOD, HALF_RATE, LATE, LOAD,
+                                                      LONGEST_START_S, LOSSES, MISSES, NOTHING,
+                                                      OLD, OTHER, RESTART, SILENT, SLOWER, STALL,
+                                                      STARVED, STOP, Fault)
 from self_awareness_evaluation.records import FaultRecord, Learning, WindowedEvents
 from self_awareness_evaluation.records import Robot as RecordedRobot
 
@@ -29,7 +30,8 @@ TITLES: Dict[str, str] = {  # what tables call the kinds of faults
     STOP: 'others stop after a crash', SLOWER: '0.7 of the rate', OLD: 'stamps are 3 s older',
     LOSSES: '30 % of the messages lost', OTHER: 'no transform, failed goals, an error (WARN)',
     FLOOD: 'log lines without end', NEVER: 'no latched message (WARN)',
-    FAILS: 'four in five goals fail, not one in twelve', UNHEARD: 'deaths before the first answer'}
+    FAILS: 'four in five goals fail, not one in twelve', UNHEARD: 'deaths before the first answer',
+    DOUBLE_RATE: 'double rate'}
 
 KINDS = tuple(TITLES)  # as they are told apart in the results
 WATCHED_S = 1800.0  # length of a recording of normal operation that is watched [s]
@@ -114,7 +116,7 @@ class Records:
         who = {CRASH: regular, HALF_RATE: regular, LATE: late, MISSES: late,
                DEATH: asked, UNHEARD: asked,
                STARVED: [''], SILENT: [''], SELDOM: robot.seldom, RESTART: regular,
-               SLOWER: regular, OLD: robot.numbered[::_ONE_IN],
+               SLOWER: regular, DOUBLE_RATE: regular, OLD: robot.numbered[::_ONE_IN],
                LOSSES: robot.numbered[1::_ONE_IN],
                OTHER: robot.sending(lambda output: bool(output.other) and not output.fails),
                FLOOD: robot.sending(lambda output: output.datatype == WARNING),

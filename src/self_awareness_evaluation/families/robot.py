@@ -10,11 +10,11 @@ from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families.emissions import (Emission, Feedback, Once, Sporadic,
                                                           attributes_of, has_header, stalled)
-from self_awareness_evaluation.families.scene import (AFTER_CRASH, CRASH, FAILS, FLOOD, HALF_RATE,
-                                                      LASTS_S, LATE, LOAD, LONGEST_START_S, LOSSES,
-                                                      MISSES, NOTHING, OLD, OTHER, RESTART, SILENT,
-                                                      SLOWER, STARVED, Activity, Conditions, Fault,
-                                                      Scene, in_order)
+from self_awareness_evaluation.families.scene import (AFTER_CRASH, CRASH, DOUBLE_RATE, FAILS,
+                                                      FLOOD, HALF_RATE, LASTS_S, LATE, LOAD,
+                                                      LONGEST_START_S, LOSSES, MISSES, NOTHING,
+                                                      OLD, OTHER, RESTART, SILENT, SLOWER, STARVED,
+                                                      Activity, Conditions, Fault, Scene, in_order)
 from self_awareness_evaluation.records import WindowedEvents
 
 # Topic and datatype of log lines that a component writes without end with FLOOD.
@@ -206,6 +206,8 @@ class Robot:
         if fault.kind in (HALF_RATE, SLOWER) and (is_timed or answers):
             left = 0.5 if fault.kind == HALF_RATE else _SLOWER_RATE
             return times[~hit | (np.diff(np.floor(np.arange(-1, len(times)) * left)) > 0)]
+        if fault.kind == DOUBLE_RATE and (is_timed or answers):
+            return np.sort(np.concatenate([times, (times[1:] + times[:-1])[hit[1:]] / 2.0]))
         return times
 
     def _recorded(self, scene: Scene, index: int) -> Tuple[np.ndarray, np.ndarray]:

@@ -11,6 +11,7 @@ import numpy as np
 CRASH = 'crash'  # it is silent
 RESTART = 'restart'  # it is, too; after the relief its timers have other phases
 HALF_RATE = 'half rate'  # it leaves out every second message
+DOUBLE_RATE = 'double rate'  # it sends a second message between each two
 SLOWER = '0.7 of the rate'  # its timers are slower, and it leaves out some answers
 LATE = 'late 60 ms'  # its answers to others come so much later
 MISSES = 'misses inputs'  # it answers nothing for a second, now and then

@@ -170,7 +170,7 @@ def test_the_families() -> None:
     for name in ('timers', 'all'):
         assert (f'| {name} | {told} | 0.3 % | 6 | 33 / 67 / 67 %, first 50 %, end 100 % | – '
                 '| 100 %, 0.10 s, first 100 %, end 100 % | – | – | – | – | – | – | – | – | – | – '
-                '| – | – | – | 3 after 2 | – of – | answers 12 |') in research
+                '| – | – | – | – | 3 after 2 | – of – | answers 12 |') in research
     pooled = [line for line in research if line.startswith('| evidence | 2 starts | –')]
     assert pooled and f'| {told} | 0.38 | 50 % | 6 |' in pooled[0]
     assert any(line.startswith('| gaps | 2 starts | – | 0.5 (') for line in research)
