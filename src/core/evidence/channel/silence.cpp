@@ -13,8 +13,7 @@ namespace {
 
 /// Whether it is a log line that warns, or tells of an error: that there is none is no fault.
 bool isComplaint(const EventType& type) {
-  const std::string level = valueOf(type);
-  return type.scope == kLogTopic && !level.empty() && level != "level=1" && level != "level=2";
+  return logLevelOf(type).value_or(0) >= kWarning;
 }
 
 class SilenceState : public ChannelState {
