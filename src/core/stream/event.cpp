@@ -1,7 +1,6 @@
 #include "self_awareness/core/stream/event.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstddef>
 #include <ctime>
 #include <string_view>
@@ -18,7 +17,6 @@ namespace {
 constexpr std::string_view kLatched = "[latched]";
 constexpr std::string_view kMode = "[mode: ";
 constexpr std::string_view kLists = "[lists ";
-constexpr std::string_view kLevel = "[level=";
 // In a list.
 constexpr std::string_view kAfterField = ": ";
 constexpr std::string_view kBetween = ", ";
@@ -42,16 +40,6 @@ std::string valueOf(const EventType& type) {
   const bool is_value = begin > 0 && type.type.find('=', begin) != std::string::npos &&
                         type.type.back() == ']' && !tellsList(type);
   return is_value ? type.type.substr(begin, type.type.size() - begin - 1) : "";
-}
-
-std::optional<int> logLevelOf(const EventType& type) {
-  const std::optional<std::string_view> said = saidAfter(kLevel, type);
-  int level = 0;
-  if (type.scope != kLogTopic || !said ||
-      std::from_chars(said->data(), said->data() + said->size(), level).ec != std::errc()) {
-    return std::nullopt;
-  }
-  return level;
 }
 
 std::optional<EventType> withoutValue(const EventType& type) {

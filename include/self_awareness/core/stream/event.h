@@ -28,15 +28,6 @@ inline bool operator<(const EventType& a, const EventType& b) {
 /// The value that the type field of its messages has: "status.status=4"; empty: they have none.
 std::string valueOf(const EventType& type);
 
-/// Topic of the log that all nodes write: its lines are for people, and come in bursts.
-inline const std::string kLogTopic = "/rosout";
-/// Levels of log lines (rosgraph_msgs/Log); there are lower and higher ones.
-constexpr int kWarning = 4;
-constexpr int kError = 8;
-/// The level of the log lines of a type, as the default encoding tells it; none: it is of no log
-/// lines, or of those of all levels.
-std::optional<int> logLevelOf(const EventType& type);
-
 /// An event type without the value of its type field, or what is told besides its messages; none:
 /// it says neither.
 std::optional<EventType> withoutValue(const EventType& type);

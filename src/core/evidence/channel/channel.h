@@ -26,6 +26,9 @@ class Model;
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
+/// Its lines are for people, and come in bursts.
+inline const std::string kLogTopic = "/rosout";
+
 /// What a channel chooses its tracks by.
 struct Choice {
   const Statistics& both;  ///< counts of both halves of the training

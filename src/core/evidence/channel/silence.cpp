@@ -13,7 +13,8 @@ namespace {
 
 /// Whether it is a log line that warns, or tells of an error: that there is none is no fault.
 bool isComplaint(const EventType& type) {
-  return logLevelOf(type).value_or(0) >= kWarning;
+  const std::string level = valueOf(type);
+  return type.scope == kLogTopic && !level.empty() && level != "level=1" && level != "level=2";
 }
 
 class SilenceState : public ChannelState {

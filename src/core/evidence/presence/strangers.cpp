@@ -7,6 +7,10 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+const std::string kLog = "/rosout";
+// As the default encoding tells lines apart: DEBUG, INFO, WARN.
+const std::set<std::string> kBelowError{"[level=1]", "[level=2]", "[level=4]"};
+
 const std::set<std::string> kForEverybody{"/rosout", "/diagnostics", "/tf", "/tf_static"};
 
 }  // namespace
@@ -134,7 +138,9 @@ bool Strangers::isUsualLine(EventId id) const {
     return false;
   }
   const EventType& type = heard_->at(id);
-  return logLevelOf(type).value_or(kError) < kError && sources_.count(type.source) > 0;
+  const std::size_t level = type.type.find('[');
+  return type.scope == kLog && level != std::string::npos &&
+         kBelowError.count(type.type.substr(level)) > 0 && sources_.count(type.source) > 0;
 }
 
 std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const {
