@@ -207,7 +207,7 @@ class Robot:
             left = 0.5 if fault.kind == HALF_RATE else _SLOWER_RATE
             return times[~hit | (np.diff(np.floor(np.arange(-1, len(times)) * left)) > 0)]
         if fault.kind == DOUBLE_RATE and (is_timed or answers):
-            return np.sort(np.concatenate([times, (times[1:] + times[:-1])[hit[1:]] / 2.0]))
+            return np.sort(np.concatenate([times, (times[1:] + times[:-1])[hit[:-1]] / 2.0]))
         return times
 
     def _recorded(self, scene: Scene, index: int) -> Tuple[np.ndarray, np.ndarray]:
