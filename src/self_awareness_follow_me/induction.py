@@ -127,7 +127,7 @@ def intruding(effect: Intruder, namespace: str = '', scenario: Optional[Path] = 
         try:
             process.wait(_WITHIN_S)
         except subprocess.TimeoutExpired:
-            process.kill()
+            process.kill()  # the master keeps its names
             process.wait()
 
 

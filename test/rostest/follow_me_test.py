@@ -33,7 +33,7 @@ _STAMPED = 'legs'
 _DEADLINE_S = 45.0
 # Of one test. All of them together take less than what the .test file allows: so a test that waits
 # for what never comes, or hangs, says so itself.
-_TEST_S = 80
+_TEST_S = 60
 
 
 def wait_for(condition: Callable[[], bool], what: str) -> None:

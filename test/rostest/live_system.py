@@ -240,9 +240,8 @@ class MonitorListener:
 
     @property
     def errors(self) -> List[str]:
-        """What alarms said, but that the machine is busy: beside other tests, it is."""
-        return [alarm.message for alarm in self.alarms if alarm.level == SelfAwareness.ERROR
-                and alarm.kind != SelfAwareness.BUSY_MACHINE]
+        """What alarms said that are of somebody."""
+        return [alarm.message for alarm in self.alarms if self._is_of_somebody(alarm)]
 
     def diagnostics(self, task: str) -> List[DiagnosticStatus]:
         """All statuses so far of one task: 'communication', 'monitor' or a component."""
@@ -300,12 +299,17 @@ class MonitorListener:
         On a busy machine, an alarm may say so first, and later who died.
         """
         alarm = await_condition(
-            'an alarm', lambda: next((a for a in self.alarms if a.level == SelfAwareness.ERROR
-                                      and a.alarm not in self._awaited
-                                      and (a.kind != SelfAwareness.BUSY_MACHINE or a.suspects)),
-                                     None), timeout)
+            'an alarm', lambda: next((a for a in self.alarms if self._is_of_somebody(a)
+                                      and a.alarm not in self._awaited), None), timeout)
         self._awaited.add(alarm.alarm)
         return alarm
+
+    @staticmethod
+    def _is_of_somebody(alarm: SelfAwareness) -> bool:
+        """Whether it is an alarm that says more than that the machine is busy: beside other tests,
+        it is."""
+        return alarm.level == SelfAwareness.ERROR and bool(
+            alarm.kind != SelfAwareness.BUSY_MACHINE or alarm.suspects)
 
     def await_culprit(self, source: str, topic: str, timeout: float = 20) -> None:
         """Waits until an alarm names a node first; no alarm may have named another one before,
