@@ -45,16 +45,17 @@ void blame(const Suspect& suspect, Alarm& alarm) {
   alarm.waiting.clear();
 }
 
-/// Whether somebody is to blame rather than the culprit: it was missed before, or the culprit does
-/// not come since what it waits for was unusual before.
-/// @param is_named whether the culprit still is
-bool beganEarlier(const Suspect& first, const Suspect& culprit, bool is_named) {
+/// Whether somebody is to blame rather than the culprit: it was missed before, or was unusual
+/// before, and the culprit does not come for that, or is unusual for that.
+/// @param now the culprit as it is named now; null: it is not
+bool beganEarlier(const Suspect& first, const Suspect& culprit, const Suspect* now) {
   if (isAbsence(first.reason.kind)) {
     return first.missed > 0 && first.missed < culprit.onset;
   }
-  return is_named && isAbsence(culprit.reason.kind) && first.reason.kind != Kind::kStranger &&
-         !isShared(first.reason.kind) && first.component != culprit.component && first.onset > 0 &&
-         first.onset < culprit.onset;
+  return now != nullptr &&
+         (isAbsence(culprit.reason.kind) || now->roots.count(first.component) > 0) &&
+         first.reason.kind != Kind::kStranger && !isShared(first.reason.kind) &&
+         first.component != culprit.component && first.onset > 0 && first.onset < culprit.onset;
 }
 
 /// Who is to blame for a suspicion once the machine is busy no more: the first one that is named
@@ -80,14 +81,16 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
                                   (alarm.kind == Kind::kNewMode && !verdict.silent) ||
                                   alarm.kind == Kind::kSlowerClock;  // which nobody is silent for
   const Suspect* culprit = alarm.suspectToBlame();
-  const auto isNamed = [&] {
-    return std::any_of(suspects.begin(), suspects.end(),
-                       [&](const Suspect& suspect) { return suspect.component == alarm.culprit; });
+  const auto named = [&]() -> const Suspect* {
+    const auto found = std::find_if(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
+      return suspect.component == alarm.culprit;
+    });
+    return found != suspects.end() ? &*found : nullptr;
   };
   if (!suspects.empty() && suspects.front().abnormal) {
     const Suspect& first = suspects.front();
     if ((is_excused_no_more && isAbsence(first.reason.kind)) ||
-        (culprit != nullptr && beganEarlier(first, *culprit, isNamed()))) {
+        (culprit != nullptr && beganEarlier(first, *culprit, named()))) {
       blame(first, alarm);
       culprit = alarm.suspectToBlame();
     }
@@ -98,7 +101,7 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
       culprit = alarm.suspectToBlame();
     }
   }
-  const bool is_named = isNamed();
+  const bool is_named = named() != nullptr;
   const bool nobody =
       alarm.culprit.empty() && alarm.kind != Kind::kAllSilent && alarm.kind != Kind::kTwoSenders;
   const std::int64_t began = culprit != nullptr ? culprit->onset : alarm.begin;

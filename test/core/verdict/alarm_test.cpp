@@ -313,6 +313,27 @@ TEST_F(AlarmsTest, WhoSlowedDownBeforeItsFollowerFellSilentIsToBlame) {
   expectBlamed("/b", Kind::kSlow);
 }
 
+TEST_F(AlarmsTest, WhoWasFastBeforeWhoFollowsItIsToBlame) {
+  const auto fast = [](EventId id, std::int64_t onset) {
+    Suspect fast = suspect(id, Kind::kFast);
+    fast.abnormal = true;
+    fast.onset = onset;
+    return fast;
+  };
+  Suspect follower = fast(0, kStart);
+  const Suspect before = fast(1, kStart - kWindow);
+  add(verdict(kAlarm, {follower}));
+  add(verdict(kAlarm, {before, follower}));
+  expectBlamed("/a", Kind::kFast);  // it does not follow the other one
+  follower.roots = {"/b"};
+  add(verdict(kAlarm, {follower, before}));
+  expectBlamed("/a", Kind::kFast);  // which is not first
+  add(verdict(kAlarm, {fast(1, kStart + kWindow), follower}));
+  expectBlamed("/a", Kind::kFast);  // or only since
+  add(verdict(kAlarm, {before, follower}));
+  expectBlamed("/b", Kind::kFast);
+}
+
 TEST_F(AlarmsTest, ANewModeThatIsOverDoesNotHideWhoIsStillSilent) {
   add(verdict(kAlarm, {suspect(1, Kind::kSilent)}));
   addSilent({{}, {"/a", "/b"}, kStart, true});

@@ -143,6 +143,8 @@ struct Suspect {
   /// When the alarm or the suspicion that stands first named its component: end of the window
   /// [ns].
   std::int64_t since = 0;
+  /// Components that are unusual, too, and upstream of its component, or followed by it.
+  std::set<std::string> roots;
   Reason reason;  ///< why it is one
 };
 

@@ -34,10 +34,16 @@ std::vector<Suspect> Explanation::suspects(const Unusual& window) const {
     each.alive = each.alive || (window.heard().hasSeen(id) && each.main != nullptr &&
                                 window.heard().stamps()[id] > each.latest);
   }
-  for (const Accused& each : order(std::move(accused), window)) {
+  const std::vector<Accused> ordered = order(std::move(accused), window);
+  for (const Accused& each : ordered) {
     if (suspects.size() < kMostSuspects || each.abnormal) {
       Suspect suspect = suspectOf(*each.main, window);
       suspect.abnormal = each.abnormal;
+      for (const Accused& other : ordered) {
+        if (isRoot(other, each, window.causes)) {
+          suspect.roots.insert(model_->components()[other.component]);
+        }
+      }
       if (each.main->finding() == Finding::kSilent && each.main->share > 1) {
         const double near = tuning_.near_limit * window.limits_of_silence[suspect.id];
         suspect.missed = window.heard().windowEnd() - window.heard().age(suspect.id) +

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -93,6 +94,8 @@ TEST_F(ExplanationTest, TheRootOfTheSilentComesBeforeItsVictims) {
   EXPECT_EQ(idsOf(near), (Ids{kA, kB})) << "near its limit, it is named already";
   EXPECT_FALSE(near[0].abnormal);
   EXPECT_TRUE(near[1].abnormal);
+  EXPECT_EQ(near[0].roots, std::set<std::string>{});
+  EXPECT_EQ(near[1].roots, std::set<std::string>{"/a"});
 }
 
 TEST_F(ExplanationTest, WhoIsSilentForLongerThanEverIsARootAndNoMore) {
