@@ -385,7 +385,8 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
                   [&](const Suspect& suspect) { return suspect.abnormal && died(suspect); })) {
     add(first.front());
   }
-  const std::vector<Suspect> causes = who_sends_.causes(window, scorer_, since);
+  const std::vector<Suspect> causes =
+      who_sends_.causes(window, scorer_, since, first.empty() ? Suspect() : first.front());
   std::for_each(causes.begin(), causes.end(), add);
   // Who does not subscribe says what it always says: that explains nothing beyond a limit.
   const std::vector<Suspect>& deaf = unsubscribed_.suspects();

@@ -328,26 +328,45 @@ class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
   std::vector<Suspect> suspectsIn(const Window& window) {
     return judge_->judge(window, window.start + kWindow, NameSuspects::kIfUnusual).suspects;
   }
+  /// Who is named while kB comes far too often, and an unknown type in each window.
+  std::vector<Suspect> whileFast(EventId unknown) {
+    limit(kFaster, kB) = 3;
+    start();
+    std::vector<Suspect> named;
+    for (std::int64_t now = 0; now < 5 * kSecond; now += kWindow) {
+      Window window{now, {}};
+      for (int i = 0; i < 5; ++i) {
+        window.events.push_back(*judge_->add({now + i * kMillisecond, kB}));
+      }
+      window.events.push_back(*judge_->add({now + kWindow / 2, unknown}));
+      named = suspectsIn(window);
+    }
+    return named;
+  }
 
   EventId stranger_ = 0;
 };
 
 TEST_F(EvidenceJudgeOfStrangersTest, AnUnknownSenderOnAKnownTopicIsTheFirstSuspectOfARate) {
-  limit(kFaster, kB) = 3;
-  start();
-  std::vector<Suspect> named;
-  for (std::int64_t now = 0; now < 5 * kSecond; now += kWindow) {
-    Window window{now, {}};
-    for (int i = 0; i < 5; ++i) {
-      window.events.push_back(*judge_->add({now + i * kMillisecond, kB}));
-    }
-    window.events.push_back(*judge_->add({now + kWindow / 2, stranger_}));
-    named = suspectsIn(window);
-  }
+  const std::vector<Suspect> named = whileFast(stranger_);
   ASSERT_GE(named.size(), 2U);
   EXPECT_EQ(named[0].id, stranger_);
   EXPECT_EQ(named[1].id, kB);
   EXPECT_EQ(named[0].reason.words, "never seen in training, 1 in this window");
+}
+
+TEST_F(EvidenceJudgeOfStrangersTest, SoIsWhoSaysSomethingNewToIt) {
+  const EventId news = heard_->intern({"/d", "/own", "T"});
+  const EventId of_all = heard_->intern({"/d", "/tf", "T"});
+  const auto first = [&](EventId unknown) { return whileFast(unknown).front().id; };
+  EXPECT_EQ(first(news), news) << "nobody knows who hears it";
+  EXPECT_EQ(first(of_all), kB);
+  graph_->connect("/d", "/own", "/c");
+  graph_->connect("/d", "/tf", "/b");
+  EXPECT_EQ(first(news), kB) << "which does not hear it";
+  EXPECT_EQ(first(of_all), kB);
+  graph_->connect("/d", "/own", "/b");
+  EXPECT_EQ(first(news), news);
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStrangerOfWhileRatesCount) {

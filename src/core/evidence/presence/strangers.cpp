@@ -156,11 +156,13 @@ std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const 
 }
 
 std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& scorer,
-                                         const Moved& moved, std::int64_t since) const {
+                                         const Moved& moved, std::int64_t since,
+                                         const Suspect* unusual) const {
   std::vector<Suspect> suspects;
   for (const auto& [id, sent] : sent_) {
     const std::int64_t age = scorer.heard().windowEnd() - sent.last;
-    if (age > kRateSpan || sent.first < since || !isStranger(id) || moved.isPlaceOf(id)) {
+    const bool is_one = unusual == nullptr ? isStranger(id) : explains(id, *unusual);
+    if (age > kRateSpan || sent.first < since || !is_one || moved.isPlaceOf(id)) {
       continue;
     }
     Suspect suspect = unknownSuspect(id, window);
@@ -184,6 +186,18 @@ bool Strangers::isStranger(EventId id) const {
   return known != known_.end() &&
          std::none_of(known->second.begin(), known->second.end(),
                       [&](EventId other) { return heard_->at(other).source == type.source; });
+}
+
+bool Strangers::explains(EventId id, const Suspect& unusual) const {
+  if (!heard_ || id >= heard_->size() || heard_->tellsList(id)) {
+    return false;
+  }
+  const EventType& type = heard_->at(id);
+  const bool is_heard = graph_->empty()
+                            ? unusual.reason.kind == Kind::kFast
+                            : graph_->hears(unusual.component, type.source, type.scope);
+  return isStranger(id) || (is_heard && !isAbsence(unusual.reason.kind) &&
+                            type.source != unusual.component && !isForEverybody(type.scope));
 }
 
 }  // namespace self_awareness::core::evidence

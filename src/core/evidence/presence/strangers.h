@@ -56,13 +56,18 @@ class Strangers {
   /// Those that were heard in the last kRateSpan, without those that have the place of others.
   /// @param scorer of the same recording, at the end of the window
   /// @param since as addUnknown()
+  /// @param unusual only those that explain why this one is so, among them who sent it what
+  /// training never saw; null: all
   std::vector<Suspect> suspects(const Window& window, const Scorer& scorer, const Moved& moved,
-                                std::int64_t since) const;
+                                std::int64_t since, const Suspect* unusual) const;
 
  private:
   /// An event type that training never saw, as a suspect of a window.
   Suspect unknownSuspect(EventId id, const Window& window) const;
   bool isStranger(EventId id) const;
+  /// Whether it is why another one is unusual: a stranger, or what this one hears, or, where
+  /// nobody knows who hears whom, any if it sends too often. No list is.
+  bool explains(EventId id, const Suspect& unusual) const;
   bool isKnownByName(EventId id) const;
   bool isUsualLine(EventId id) const;
   bool isFlood(const Event& line);

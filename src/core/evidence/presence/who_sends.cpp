@@ -75,14 +75,13 @@ std::set<std::string> WhoSends::evidence() const {
 }
 
 std::vector<Suspect> WhoSends::causes(const Window& window, const Scorer& scorer,
-                                      std::int64_t since) const {
+                                      std::int64_t since, const Suspect& unusual) const {
   std::vector<Suspect> causes = two_senders_.suspects(scorer.heard());
   append(players_.suspects(), causes);
-  for (const Suspect& stranger : strangers(window, scorer, since)) {
-    if (stranger.reason.topics.empty()) {  // else one that is known, and says something new
-      causes.push_back(stranger);
-      break;
-    }
+  const std::vector<Suspect> explain =
+      strangers_.suspects(window, scorer, moved_, since, &unusual);
+  if (!explain.empty()) {
+    causes.push_back(explain.front());
   }
   return causes;
 }

@@ -67,12 +67,13 @@ class WhoSends {
 
   /// Who explains what is unusual: who is there twice, who plays, and one stranger.
   /// @param since as Strangers::addUnknown()
-  std::vector<Suspect> causes(const Window& window, const Scorer& scorer,
-                              std::int64_t since) const;
+  /// @param unusual who is first without them
+  std::vector<Suspect> causes(const Window& window, const Scorer& scorer, std::int64_t since,
+                              const Suspect& unusual) const;
   /// All others, which explain nothing.
   std::vector<Suspect> strangers(const Window& window, const Scorer& scorer,
                                  std::int64_t since) const {
-    return strangers_.suspects(window, scorer, moved_, since);
+    return strangers_.suspects(window, scorer, moved_, since, nullptr);
   }
   std::vector<Suspect> movers() const { return moved_.suspects(true); }
   /// Drops those of movers() from suspects that are so for being unknown.

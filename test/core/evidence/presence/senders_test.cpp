@@ -214,7 +214,7 @@ TEST_F(NewsTest, WhoSaysSomethingNewExplainsNothingElse) {
   who_sends.addList({kSecond, heard->intern(list({"arm"}))}, accepted);
   who_sends.closeWindow(scorer.heard(), accepted);
   EXPECT_EQ(who_sends.alone({}, scorer, false).size(), 1U);
-  EXPECT_TRUE(who_sends.causes({}, scorer, 0).empty());
+  EXPECT_TRUE(who_sends.causes({}, scorer, 0, {}).empty());
 }
 
 TEST_F(NewsTest, ALevelBelowErrorIsTheNodesOwn) {
