@@ -329,9 +329,10 @@ class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
     return judge_->judge(window, window.start + kWindow, NameSuspects::kIfUnusual).suspects;
   }
   /// Who is named while kB comes far too often, and an unknown type in each window.
-  std::vector<Suspect> whileFast(EventId unknown) {
+  /// @param heard before
+  std::vector<Suspect> whileFast(EventId unknown, const Events& heard = {}) {
     limit(kFaster, kB) = 3;
-    start();
+    start(heard);
     std::vector<Suspect> named;
     for (std::int64_t now = 0; now < 5 * kSecond; now += kWindow) {
       Window window{now, {}};
@@ -367,6 +368,9 @@ TEST_F(EvidenceJudgeOfStrangersTest, SoIsWhoSaysSomethingNewToIt) {
   EXPECT_EQ(first(of_all), kB);
   graph_->connect("/d", "/own", "/b");
   EXPECT_EQ(first(news), news);
+  graph_->connect("/d", "/own", "/a");
+  limit(kOverdue, kA) = 1;
+  EXPECT_EQ(idsOf(whileFast(news, {{0, kA}})), (Ids{kA, kB, news})) << "which did not kill it";
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStrangerOfWhileRatesCount) {

@@ -65,7 +65,8 @@ class WhoSends {
   /// Whether some are there twice for longer than a restart takes.
   bool isAbnormal() const { return two_senders_.last(); }
 
-  /// Who explains what is unusual: who is there twice, who plays, and one stranger.
+  /// Who explains what is unusual: who is there twice, who plays, and one stranger,
+  /// or who sent to it what training never saw.
   /// @param since as Strangers::addUnknown()
   /// @param unusual who is first without them
   std::vector<Suspect> causes(const Window& window, const Scorer& scorer, std::int64_t since,
