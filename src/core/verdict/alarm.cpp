@@ -122,17 +122,17 @@ void findCause(const Verdict& verdict, const std::vector<Suspect>& suspects, Ala
 }
 
 /// Whether what is wrong with a suspect is told better now: on how many topics somebody is there
-/// who should not be, or by whose clock, shows with time; who lost some messages in a row fell
-/// silent for that; and who is fast by the factor of others is so by the clock.
+/// who should not be, or by whose clock, shows with time; who loses messages, or sends too seldom,
+/// fell silent for that; and who is fast by the factor of others is so by the clock.
 bool isToldBetter(const Suspect& before, const Suspect& now) {
-  const bool grows = isShared(now.reason.kind) || !now.reason.topics.empty();
-  const bool comes_with_losses =
-      now.abnormal && now.reason.kind == Kind::kLossy && isAbsence(before.reason.kind);
-  const bool is_the_clock = now.component == before.component &&
-                            now.reason.kind == Kind::kSlowerClock &&
+  const Kind kind = now.reason.kind;
+  const bool grows = isShared(kind) || !now.reason.topics.empty();
+  const bool still_comes = now.abnormal && isAbsence(before.reason.kind) &&
+                           (kind == Kind::kLossy || kind == Kind::kSlow);
+  const bool is_the_clock = now.component == before.component && kind == Kind::kSlowerClock &&
                             before.reason.kind == Kind::kFast;
-  return is_the_clock || (now.id == before.id &&
-                          (comes_with_losses || (grows && now.reason.kind == before.reason.kind)));
+  return is_the_clock ||
+         (now.id == before.id && (still_comes || (grows && kind == before.reason.kind)));
 }
 
 void growWith(const Verdict& verdict, Alarm& alarm) {

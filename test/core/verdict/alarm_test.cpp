@@ -117,19 +117,22 @@ TEST_F(AlarmsTest, WhoIsNamedLaterChangesNeitherIdNorCulprit) {
   EXPECT_EQ(after.later[0].component, "/b");
 }
 
-TEST_F(AlarmsTest, WhoComesWithLossesFellSilentForThem) {
-  add(verdict(kAlarm, {missing(0), missing(1)}));
-  Suspect lossy = suspect(0, Kind::kLossy);
-  add(verdict(kAlarm, {lossy}));
-  EXPECT_EQ(alarms_.standing()->kind, Kind::kSilent) << "within its limit, it says nothing";
-  lossy.abnormal = true;
-  lossy.reason.words = "5 of 16 missing";
-  add(verdict(kAlarm, {lossy}));
-  const Alarm alarm = *alarms_.standing();
-  EXPECT_EQ(alarm.culprit, "/a");
-  EXPECT_EQ(alarm.kind, Kind::kLossy);
-  EXPECT_EQ(alarm.reason, "5 of 16 missing");
-  EXPECT_EQ(alarm.suspects[1].reason.kind, Kind::kSilent);
+TEST_F(AlarmsTest, WhoComesWithLossesOrTooSeldomFellSilentForThat) {
+  for (const Kind kind : {Kind::kLossy, Kind::kSlow}) {
+    alarms_ = Alarms();
+    add(verdict(kAlarm, {missing(0), missing(1)}));
+    Suspect comes = suspect(0, kind);
+    add(verdict(kAlarm, {comes}));
+    EXPECT_EQ(alarms_.standing()->kind, Kind::kSilent) << "within its limit, it says nothing";
+    comes.abnormal = true;
+    comes.reason.words = "5 of 16 missing";
+    add(verdict(kAlarm, {comes}));
+    const Alarm alarm = *alarms_.standing();
+    EXPECT_EQ(alarm.culprit, "/a");
+    EXPECT_EQ(alarm.kind, kind);
+    EXPECT_EQ(alarm.reason, "5 of 16 missing");
+    EXPECT_EQ(alarm.suspects[1].reason.kind, Kind::kSilent);
+  }
 }
 
 TEST_F(AlarmsTest, WhoWaitsForTheCulpritIsKeptWhereMostDid) {
