@@ -65,23 +65,28 @@ std::vector<std::string> togetherWith(const Occurrence& main, const SourceGraph&
   return together;
 }
 
-/// Divides those that are named into victims and others.
+/// Divides those that are named into victims and others: who needs another one that is named
+/// before it is no fault of its own, either.
 void divide(std::vector<std::string> named, const SourceGraph& graph, Incident& incident) {
   std::set<std::string> reached;
+  const auto reach = [&](const std::string& cause) { reached.merge(dependentsOf(graph, cause)); };
   std::vector<std::string> causes = incident.together;
   if (!incident.cause.empty()) {
     causes.insert(causes.begin(), incident.cause);
   }
-  for (const std::string& cause : causes) {
-    const std::set<std::string> needing = dependentsOf(graph, cause);
-    reached.insert(needing.begin(), needing.end());
-  }
+  std::for_each(causes.begin(), causes.end(), reach);
   incident.victims.clear();
   incident.others.clear();
   for (std::string& name : named) {
-    std::vector<std::string>& list = reached.count(name) > 0 ? incident.victims : incident.others;
-    if (!name.empty() && !contains(causes, name) && !contains(list, name) &&
-        list.size() < Incident::kMostNamed) {
+    const bool is_victim = reached.count(name) > 0;
+    std::vector<std::string>& list = is_victim ? incident.victims : incident.others;
+    if (name.empty() || contains(causes, name) || contains(list, name)) {
+      continue;
+    }
+    if (!is_victim) {
+      reach(name);
+    }
+    if (list.size() < Incident::kMostNamed) {
       list.push_back(std::move(name));
     }
   }
@@ -89,8 +94,8 @@ void divide(std::vector<std::string> named, const SourceGraph& graph, Incident& 
 
 std::vector<std::string> namedIn(const Incident& incident) {
   std::vector<std::string> named = incident.together;
-  named.insert(named.end(), incident.victims.begin(), incident.victims.end());
   named.insert(named.end(), incident.others.begin(), incident.others.end());
+  named.insert(named.end(), incident.victims.begin(), incident.victims.end());
   return named;
 }
 

@@ -210,6 +210,20 @@ TEST_F(IncidentsTest, WhoFallsSilentAtOnceFailedTogether) {
   EXPECT_EQ(one().others, Names{"/d"}) << "nobody needs a log";
 }
 
+TEST_F(IncidentsTest, WhoNeedsAnotherOneThatFailedIsItsVictim) {
+  graph_.connect("/lidar", "/scan", "/planner");
+  graph_.connect("/planner", "/plan", "/controller");
+  graph_.connect("/controller", "/state", "/planner");
+  Occurrence stands = alarm(10, 11, {"/battery"}, false);
+  for (const std::string name : {"/lidar", "/planner", "/controller", "/camera"}) {
+    stands.named.push_back({name, true, 14 * kSecond, 14 * kSecond});
+    add(stands);
+  }
+  EXPECT_EQ(one().cause, "/battery");
+  EXPECT_EQ(one().others, (Names{"/lidar", "/camera"}));
+  EXPECT_EQ(one().victims, (Names{"/planner", "/controller"}));
+}
+
 TEST_F(IncidentsTest, AnotherAlarmEndsTheOneBefore) {
   add(alarm(10, 11, {"/a"}, false));
   add(alarm(50, 51, {"/b"}, false));

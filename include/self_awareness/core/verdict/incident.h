@@ -59,12 +59,13 @@ struct Incident {
   /// Failed at once with it, and do not need its messages; of a new mode: all that stopped, if
   /// they are known.
   std::vector<std::string> together;
-  std::vector<std::string> victims;  ///< are named, and need messages of these, by the graph
-  std::vector<std::string> others;   ///< are named besides
-  std::vector<std::string> hosts;    ///< that fell silent as a whole: they are the cause
-  std::int64_t opened = 0;           ///< begin of the one that `id` is of [ns]
-  std::int64_t grown = 0;  ///< when it was raised last, or named a further component [ns]
-  std::int64_t end = 0;    ///< of the last one, so far if it is not over [ns]
+  /// Are named, and need messages of these or of others, by the graph.
+  std::vector<std::string> victims;
+  std::vector<std::string> others;  ///< are named besides
+  std::vector<std::string> hosts;   ///< that fell silent as a whole: they are the cause
+  std::int64_t opened = 0;          ///< begin of the one that `id` is of [ns]
+  std::int64_t grown = 0;           ///< when it was raised last, or named a further component [ns]
+  std::int64_t end = 0;             ///< of the last one, so far if it is not over [ns]
   bool over = false;
   bool unknown = false;            ///< over for the monitor, which ended while it was open
   std::uint32_t alarms = 0;        ///< how often it was raised
