@@ -204,15 +204,18 @@ class IndexReader {
     }
   }
 
-  /// Goes on to a position; only connections may lie before it.
+  /// Goes on to a position; only connections may lie before it, and what `rosbag reindex` leaves
+  /// of an index that was cut off.
   void passConnections(std::uint64_t position) {
     while (position_ < position) {
       const PiecesOfFile::Record record = file_.record(position_, kLargestConnection);
-      if (opOf(record.header) != Op::kConnection) {
+      const Op op = opOf(record.header);
+      if (op == Op::kConnection) {
+        checkConnection(number<std::uint32_t>(record.header, "conn"),
+                        field(record.header, "topic"), record.data);
+      } else if (op != Op::kChunkInfo) {
         throw FormatError("its index leaves out a chunk");
       }
-      checkConnection(number<std::uint32_t>(record.header, "conn"), field(record.header, "topic"),
-                      record.data);
       position_ = record.end;
     }
     if (position_ != position) {

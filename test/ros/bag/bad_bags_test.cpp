@@ -215,6 +215,11 @@ TEST_F(BadBagsTest, AChunkThatIsThereTwiceOrNotAtAllOrEncryptedIsRefused) {
   EXPECT_TRUE(has(errorOf(bag({chunk.size()})), "leaves out a chunk"));
   EXPECT_TRUE(has(errorOf(bag({chunk.size(), 0})), "leaves out a chunk"));
   EXPECT_TRUE(has(errorOf(bag({0, chunk.size()})), "the same messages twice"));
+  const std::string index = parts_.connectionRecord() + Parts::chunkInfo(first, 3);
+  EXPECT_EQ(errorOf(Parts::fileHeader(first + chunk.size() + index.size(), 1, 1) + chunk + index +
+                    index),
+            "")
+      << "`rosbag reindex` writes an index behind one that was cut off";
   const std::string rest = chunk.substr(0, 50);  // as `rosbag reindex` leaves it
   EXPECT_TRUE(
       has(errorOf(Parts::fileHeader(first + rest.size(), 1, 0) + rest + parts_.connectionRecord()),
