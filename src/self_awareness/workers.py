@@ -122,8 +122,9 @@ class Processes(Workers):
                             break
                         # A signal that comes just before the wait does not end it: look again.
                         for pipe in connection.wait(list(running), _LOOK_AGAIN_S):
-                            process, index, attempt = running.pop(pipe)
+                            process, index, attempt = running[pipe]
                             outcome = process.answer()
+                            del running[pipe]  # not before: who interrupts it ends all of them
                             if outcome is None and attempt < _ATTEMPTS:
                                 begin(index, attempt + 1)
                             else:
@@ -164,12 +165,12 @@ class _Forked:
     def answer(self) -> Optional[bytes]:
         """Return its result, once the pipe is ready; None: it was killed."""
         try:
-            return self.pipe.recv_bytes()
+            answer: Optional[bytes] = self.pipe.recv_bytes()
         except (EOFError, OSError):  # perhaps in the middle of its answer
-            return None
-        finally:
-            self.pipe.close()
-            self._process.join()
+            answer = None
+        self.pipe.close()
+        self._process.join()
+        return answer
 
     def kill(self) -> None:
         """End it, whatever it does."""

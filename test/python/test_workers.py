@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import threading
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Callable, Tuple
 
@@ -22,8 +23,9 @@ import sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # who runs the tests may ignore it
 sys.path.insert(0, {tests!r})
 from pathlib import Path
-from test_workers import begin_and_hang, Processes
-list(Processes(2).map(begin_and_hang, Path({folder!r}), range(2), "test"))
+from test_workers import answer_at_length, begin_and_hang, Connection, interrupt, Processes
+{first}
+list(Processes(2).map({work}, Path({folder!r}), range(1, 3), "test"))
 """
 
 EVERYONE = [InProcess(), Processes(1), Processes(3)]
@@ -119,7 +121,7 @@ def answer_at_length(folder: Path, number: int) -> Any:
 
 @pytest.mark.parametrize('whom', [os.kill, os.killpg])
 def test_ctrl_c_ends_all_at_once(whom: Callable[[int, int], None], tmp_path: Path) -> None:
-    program = PROGRAM.format(tests=str(Path(__file__).parent), folder=str(tmp_path))
+    program = program_of('begin_and_hang', tmp_path)
     with subprocess.Popen([sys.executable, '-c', program], start_new_session=True,
                           stderr=subprocess.PIPE, text=True) as process:
         wait_until(lambda: len(begun(tmp_path)) == 2, 'two processes hang')
@@ -127,6 +129,22 @@ def test_ctrl_c_ends_all_at_once(whom: Callable[[int, int], None], tmp_path: Pat
         _, said = process.communicate(timeout=2.0)
     assert not any(map(alive, begun(tmp_path)))
     assert said.count('Traceback') == 1 and said.endswith('KeyboardInterrupt\n')
+
+
+def test_ctrl_c_ends_who_is_in_the_middle_of_an_answer(tmp_path: Path) -> None:
+    program = program_of('answer_at_length', tmp_path, 'Connection.recv_bytes = interrupt')
+    ended = subprocess.run([sys.executable, '-c', program], stderr=subprocess.DEVNULL, timeout=30.0)
+    assert ended.returncode == -signal.SIGINT
+    assert not any(map(alive, begun(tmp_path)))
+
+
+def program_of(work: str, folder: Path, first: str = '') -> str:
+    return PROGRAM.format(tests=str(Path(__file__).parent), work=work, folder=str(folder),
+                          first=first)
+
+
+def interrupt(_: Connection) -> bytes:
+    raise KeyboardInterrupt
 
 
 def alive(pid: int) -> bool:
@@ -157,7 +175,7 @@ def _second_hangs(folder: Path, number: int) -> int:
 
 @pytest.mark.parametrize('how', [signal.SIGTERM, signal.SIGKILL])
 def test_no_process_outlives_the_program(how: signal.Signals, tmp_path: Path) -> None:
-    program = PROGRAM.format(tests=str(Path(__file__).parent), folder=str(tmp_path))
+    program = program_of('begin_and_hang', tmp_path)
     with subprocess.Popen([sys.executable, '-c', program]) as process:
         wait_until(lambda: len(begun(tmp_path)) == 2, 'two processes hang')
         os.kill(process.pid, how)
