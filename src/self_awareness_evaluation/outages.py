@@ -109,7 +109,7 @@ def _evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
     found = recordings.read(trained, _below(data, BagPart(case.judged)))
     verdicts = evidence_judge(trained, DetectorParameters())(RecordingEvents(
         found.event_types, found.stamps, found.ids, found.end, attributes=found.attributes))
-    judged = judged_of(verdicts, found.event_types, trained.graph)
+    judged = judged_of(verdicts, found.event_types)
     return JudgedCase(judged.alarms, judged.suspicions, found.origin, found.end, len(watched))
 
 
@@ -169,4 +169,4 @@ def case_rows(subject: Subject, case: Case, judged: JudgedCase) -> Iterator[Row]
     row = Row(subject, OUTAGE, watched=judged.watched,
               stood_before=any(alarm.stands_at(onset) for alarm in judged.alarms),
               latency_s=None if found is None else (found.start - onset) / SECOND_NS)
-    yield at_end(row, [*judged.alarms, *judged.suspicions], onset, relief)
+    yield at_end(row, [*judged.alarms, *judged.suspicions], relief)

@@ -25,7 +25,6 @@ NORMAL = 'normal'  # what a record without a fault is called, in place of the ki
 # Where records come from: robots drawn by seed, the simulated follow-me robot, real robots.
 FAMILIES, OWN, REAL = 'families', 'own robot', 'recordings'
 ALARM, SUSPICION = 'ERROR', 'WARN'  # levels, as diagnostics call them
-EXCUSES = ('busy machine', 'all silent', 'new mode')  # kinds of alarms that are no node's fault
 
 # The share of normal windows of the calibration that may score below the threshold.
 FALSE_POSITIVE_RATE = 0.001
@@ -151,9 +150,6 @@ class SystemAlarm:
     level: str = ALARM  # ALARM or SUSPICION
     culprit: str = ''  # who is to blame when it ends; empty: nobody, or the system does not say
     kind: str = ''  # what is wrong by then; empty if the system does not say
-    # Begin and end [ns] of the incident that it belongs to, and whether that is over; None: it is
-    # one of its own.
-    incident: Optional[Tuple[int, int, bool]] = None
 
     def stands_at(self, time: int) -> bool:
         """Return whether it stands at a time [ns]."""

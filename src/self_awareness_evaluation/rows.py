@@ -15,8 +15,7 @@ import numpy as np
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.output_files import save_table
 from self_awareness.stamps import SECOND_NS, nanoseconds
-from self_awareness_evaluation.records import (ALARM, EXCUSES, NORMAL, REAL, FaultRecord, Judged,
-                                               SystemAlarm)
+from self_awareness_evaluation.records import (NORMAL, REAL, FaultRecord, Judged, SystemAlarm)
 
 # An alarm that is raised so soon after the fault is over belongs to it: a node that comes back is
 # no normal operation yet [s].
@@ -77,11 +76,6 @@ class Row:
     # Who is to blame by then, and what is wrong; empty: nobody, or not known.
     culprit: str = ''
     kind: str = ''
-    excused: bool = False  # whether that is no node's fault (EXCUSES)
-    # Begin and end of the incident that it belongs to, or of the last one that began in the fault;
-    # None: there is none, or it is not over.
-    opened_s: Optional[float] = None
-    closed_s: Optional[float] = None
     after: Optional[int] = None  # false alarms for who was back already; None: the fault lasts
     refused: str = ''  # why nothing could be judged; empty: it was
 
@@ -123,7 +117,7 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged,
             row = replace(row, first=any(guilty[:1]), among_three=any(guilty[:3]))
         if named is not None and record.involved is not None:
             row = replace(row, bystanders=len(set(named) - record.involved))
-    return at_end(row, [*judged.alarms, *judged.suspicions], onset, ends)
+    return at_end(row, [*judged.alarms, *judged.suspicions], ends)
 
 
 def first_alarm(alarms: Sequence[SystemAlarm], onset: int) -> Optional[SystemAlarm]:
@@ -140,21 +134,13 @@ def _quiet(row: Row, judged: Judged, early: np.ndarray, alarms: Sequence[SystemA
                    evidence=tuple(alarm.evidence for alarm in alarms))
 
 
-def at_end(row: Row, found: Sequence[SystemAlarm], onset: int, end: int) -> Row:
+def at_end(row: Row, found: Sequence[SystemAlarm], end: int) -> Row:
     """Return the row of a fault with what is said when it ends; found: alarms, then suspicions, of
     which an alarm goes first."""
     last = next((each for each in found if each.stands_at(end)), None)
-    if last is not None:
-        row = replace(row, level=last.level, culprit=last.culprit, kind=last.kind,
-                      excused=last.kind in EXCUSES)
-    else:
-        began = [each for each in found if onset < each.start <= end]
-        if not began:
-            return row
-        last = max(began, key=lambda each: (each.level == ALARM, each.start))
-    opened, closed, is_over = last.incident or (last.start, last.end, last.cleared)
-    return replace(row, opened_s=(opened - onset) / SECOND_NS,
-                   closed_s=(closed - onset) / SECOND_NS if is_over else None)
+    if last is None:
+        return row
+    return replace(row, level=last.level, culprit=last.culprit, kind=last.kind)
 
 
 def _noticed_s(judged: Judged, onset: int) -> Optional[float]:

@@ -16,17 +16,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import (AbstractSet, Any, Callable, Dict, Hashable, Iterable, List, NamedTuple,
-                    Optional, Sequence, Set, Tuple)
+from typing import Any, Callable, Dict, Hashable, List, NamedTuple, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, Alarm, Coverage, DetectorParameters, EventType,
-                            EvidenceModel, Learner, Occurrence, PaperModel, Tuning, Verdicts,
-                            fold_incidents, judge_by_evidence)
+                            EvidenceModel, Learner, PaperModel, Tuning, Verdicts,
+                            judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.records import (ALARM, FALSE_POSITIVE_RATE, Judged, SystemAlarm,
+from self_awareness_evaluation.records import (FALSE_POSITIVE_RATE, Judged, SystemAlarm,
                                                WindowedEvents, common_threshold, persistent,
                                                settling, stamps_by)
 
@@ -107,7 +106,7 @@ class Evidence:
     def judge(self, recording: WindowedEvents) -> Judged:
         trained = self._trained
         return judged_of(self.verdicts(recording),
-                         recording.encoded(trained.event_types).event_types, trained.graph)
+                         recording.encoded(trained.event_types).event_types)
 
     @property
     def expected_per_hour(self) -> Optional[float]:
@@ -133,39 +132,17 @@ class Evidence:
                                              for stamp, present in encoded.subscriptions]))
 
 
-def judged_of(verdicts: Verdicts, event_types: Sequence[EventType],
-              graph: AbstractSet[Tuple[str, str, str]] = frozenset()) -> Judged:
+def judged_of(verdicts: Verdicts, event_types: Sequence[EventType]) -> Judged:
     """Return what one of the package's detectors says of a recording as all systems do."""
-    incidents = incidents_of([*verdicts.alarms, *verdicts.suspicions], graph)
-
     def told(found: Sequence[Alarm]) -> List[SystemAlarm]:
         return [SystemAlarm(alarm.begin, alarm.end, alarm.over,
                             list(dict.fromkeys(event_types[suspect.id].source
                                                for suspect in alarm.suspects)), alarm.evidence,
-                            alarm.level, alarm.culprit, alarm.kind, incidents.get(alarm.id))
+                            alarm.level, alarm.culprit, alarm.kind)
                 for alarm in found]
 
     return Judged(verdicts.start, verdicts.settling, told(verdicts.alarms), verdicts.suspicion,
                   told(verdicts.suspicions))
-
-
-def incidents_of(found: Iterable[Alarm], graph: AbstractSet[Tuple[str, str, str]]
-                 ) -> Dict[int, Tuple[int, int, bool]]:
-    """Return by the id of each alarm and suspicion when its incident begins and ends [ns], and
-    whether that is over; graph: see Evidence."""
-    by_id = {each.id: each for each in sorted(found, key=lambda each: each.begin)}
-    occurrences = [Occurrence(
-        each.id, each.level == ALARM, each.begin, each.end, each.kind, each.culprit,
-        [(suspect.component, suspect.abnormal, None, suspect.reason.kind, suspect.onset)
-         for suspect in (*each.suspects, *each.later)],
-        [] if each.silent is None else each.silent.hosts) for each in by_id.values()]
-    spans = {}
-    for incident in fold_incidents(occurrences, set(graph)):
-        of_it = [by_id[id_] for id_ in incident.ids]
-        span = (min(each.begin for each in of_it), max(each.end for each in of_it),
-                all(each.over for each in of_it))
-        spans.update(dict.fromkeys(incident.ids, span))
-    return spans
 
 
 class Peer:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, replace
 from operator import attrgetter
 from statistics import median, median_low
-from typing import Iterator, List, NamedTuple, Optional, Sequence, Tuple
+from typing import Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -45,22 +45,12 @@ class Status:
     message: str = ''  # what is abnormal, in words
     component: str = ''  # that is to blame; empty: none
     kind: str = ''  # what is wrong with it
-    alarm: int = 0  # id of the alarm or suspicion
     events: int = 0  # in the window
 
     @property
     def words(self) -> str:
         """What is said, without the file."""
         return self.message.split(_RECORDED)[0]
-
-
-class Incident(NamedTuple):
-    """What one cause has done: ids of its first and last alarm, and its times [s since 1970]."""
-
-    id: int
-    last: int
-    opened: float
-    ended: float
 
 
 @dataclass(frozen=True)
@@ -99,10 +89,6 @@ class Row:
     # From then to the end of the alarm; 0: there was none then; inf: it stood to the end of the
     # wait.
     cleared_s: Optional[float] = None
-    # From the onset to when the alarm's incident was opened, and to its last alarm so far;
-    # negative: it is one with an earlier fault.
-    incident_began_s: Optional[float] = None
-    incident_ended_s: Optional[float] = None
     # From blamed_s to when a new process of the node was heard, by the recovery.
     back_s: Optional[float] = None
     events: Optional[int] = None  # that the monitor judged
@@ -125,10 +111,10 @@ class Row:
         return self.onset + (self.lasted_s if self.recovered_s is None else self.recovered_s)
 
 
-def measure(row: Row, statuses: Sequence[Status], incidents: Sequence[Incident] = ()) -> Row:
-    """Measure what the monitor said of a stretch of time, by all statuses and incidents so far.
-    The row has what is known without it: onset and lasted_s, the stretch; of normal operation 0
-    alarms; of a fault recovered_s, if the statuses go on after that."""
+def measure(row: Row, statuses: Sequence[Status]) -> Row:
+    """Measure what the monitor said of a stretch of time, by all statuses so far. The row has what
+    is known without it: onset and lasted_s, the stretch; of normal operation 0 alarms; of a fault
+    recovered_s, if the statuses go on after that."""
     before = [status for status in statuses if status.stamp <= row.onset][-1:]
     inside = [status for status in statuses
               if row.onset < status.stamp <= row.onset + row.lasted_s]
@@ -145,10 +131,10 @@ def measure(row: Row, statuses: Sequence[Status], incidents: Sequence[Incident] 
     row = replace(row, void=row.void or _void(before, inside))
     if row.recovered_s is not None:
         row = replace(row, cleared_s=_cleared(row.end, statuses))
-    return row if row.void else _of_fault(row, inside, incidents)
+    return row if row.void else _of_fault(row, inside)
 
 
-def _of_fault(row: Row, inside: Sequence[Status], incidents: Sequence[Incident]) -> Row:
+def _of_fault(row: Row, inside: Sequence[Status]) -> Row:
     guilty = {f'/{name}' for name in row.node.split()}
     alarms = [status for status in inside if status.level >= ERROR]
 
@@ -163,13 +149,8 @@ def _of_fault(row: Row, inside: Sequence[Status], incidents: Sequence[Incident])
     if not alarms:
         return row
     alarm = alarms[0]
-    row = replace(row, said=alarm.words,
-                  first=bool(set(alarm.suspects[:1]) & guilty) if guilty else None)
-    for each in reversed(incidents):
-        if each.id <= alarm.alarm <= each.last:
-            return replace(row, incident_began_s=each.opened - row.onset,
-                           incident_ended_s=each.ended - row.onset)
-    return row
+    return replace(row, said=alarm.words,
+                   first=bool(set(alarm.suspects[:1]) & guilty) if guilty else None)
 
 
 def _void(before: Sequence[Status], inside: Sequence[Status]) -> str:

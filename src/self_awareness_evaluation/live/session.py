@@ -19,11 +19,11 @@ from std_srvs.srv import Trigger
 
 from self_awareness import TrainedModel
 from self_awareness.calibration.limits import BUDGET
-from self_awareness.msg import Incidents, SelfAwareness
+from self_awareness.msg import SelfAwareness
 from self_awareness.training.robot_graph import graph_file
 from self_awareness_evaluation.live.processes import (STARTED_WITHIN_S, LiveError, Processes,
                                                       await_condition, becomes_true, say, wait)
-from self_awareness_evaluation.live.rows import ERROR, Incident, Row, Status, measure
+from self_awareness_evaluation.live.rows import ERROR, Row, Status, measure
 from self_awareness_evaluation.records import Learning
 from self_awareness_evaluation.rows import AFTERMATH_S
 from self_awareness_follow_me import induction
@@ -232,8 +232,7 @@ class Walk:
         if not step.is_normal and self._plan.quiet_within_s:
             row = self._over(row)
         becomes_true(lambda: self._monitor.statuses[-1].stamp > end, _STATUS_WITHIN_S)
-        row = replace(measure(row, self._monitor.statuses, self._monitor.incidents),
-                      **used(self._pid))
+        row = replace(measure(row, self._monitor.statuses), **used(self._pid))
         if back is not None and row.blamed_s is not None:
             row = replace(row, back_s=back - onset - row.blamed_s)
         return row
@@ -272,13 +271,11 @@ def used(pid: int) -> Dict[str, Any]:
 class MonitorListener:
     """Keeps all that the monitor says; `rospy.init_node` has been called."""
 
-    # Without a lock: only threads of rospy append to the statuses, or replace the incidents.
+    # Without a lock: only threads of rospy append to the statuses.
     def __init__(self) -> None:
         self.statuses: List[Status] = []  # all so far
-        self.incidents: List[Incident] = []  # the last ones, as they were opened
         self._heard_at = self._quiet_since = time.monotonic()
         rospy.Subscriber(f'{MONITOR}/status', SelfAwareness, self._on_status, queue_size=1000)
-        rospy.Subscriber(f'{MONITOR}/incidents', Incidents, self._on_incidents)
 
     def quiet_for(self) -> float:
         """Return for how long [s] there has been no alarm, and no settling, until now; raise
@@ -308,15 +305,11 @@ class MonitorListener:
         suspects = dict.fromkeys(suspect.source for suspect in message.suspects)  # each once
         status = Status(message.header.stamp.to_sec(), message.level, message.settling,
                         tuple(suspects), message.message, message.component, message.kind,
-                        message.alarm, message.events)
+                        message.events)
         self._heard_at = time.monotonic()
         if status.level >= ERROR or status.settling:
             self._quiet_since = self._heard_at
         self.statuses.append(status)
-
-    def _on_incidents(self, message: Incidents) -> None:
-        self.incidents = [Incident(each.id, each.last, each.opened.to_sec(), each.ended.to_sec())
-                          for each in message.incidents]
 
 
 @contextlib.contextmanager

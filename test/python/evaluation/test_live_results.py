@@ -12,9 +12,9 @@ import pytest
 from self_awareness_evaluation import evaluate
 from self_awareness_evaluation.live import command
 from self_awareness_evaluation.live.rows import (AT_RANDOM, BACK_WITHIN_S, DELAY_S, ERROR, HANGS,
-                                                 MUST_BE_FOUND_S, RESTARTED, WARN, Incident, Row,
-                                                 Status, measure, not_mended, of_faults,
-                                                 of_healthy, of_recovery, of_soak)
+                                                 MUST_BE_FOUND_S, RESTARTED, WARN, Row, Status,
+                                                 measure, not_mended, of_faults, of_healthy,
+                                                 of_recovery, of_soak)
 from self_awareness_evaluation.pages import RESULTS
 from self_awareness_evaluation.rows import AFTERMATH_S, load
 
@@ -156,18 +156,16 @@ def said(*levels: Tuple[float, int], settled_after_s: float = -2.0) -> List[Stat
         found.append(Status(ONSET + after_s, level, after_s <= settled_after_s,
                             ('/base', name) if level else (),
                             f'level {level} at {after_s:g}; events in /tmp/a.bag',
-                            name, 'silent' if level else '', 7 if level else 0, events=16))
+                            name, 'silent' if level else '', events=16))
     return found
 
 
 def test_a_fault_that_is_found_and_clears() -> None:
-    row = measure(KILLED, said((0.2, WARN), (0.4, ERROR), (8.0, WARN), (9.0, 0)),
-                  [Incident(1, 3, 0.0, 1.0), Incident(5, 9, ONSET - 60.0, ONSET + 7.5)])
+    row = measure(KILLED, said((0.2, WARN), (0.4, ERROR), (8.0, WARN), (9.0, 0)))
     assert (row.suspicion_s, row.latency_s) == (pytest.approx(0.2), pytest.approx(0.4))
     assert (row.blamed_s, row.first) == (pytest.approx(0.4), False)
     assert row.cleared_s == pytest.approx(1.9)
     assert (row.end_level, row.end_kind, row.end_component) == (ERROR, 'silent', '/lidar')
-    assert (row.incident_began_s, row.incident_ended_s) == (-60.0, 7.5)
     assert (row.void, row.events) == ('', 50 * 16)
     assert row.said == 'level 2 at 0.4', 'files of this machine are not told'
 
