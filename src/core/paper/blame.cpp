@@ -1,7 +1,6 @@
 #include "core/paper/blame.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <map>
 #include <utility>

@@ -31,7 +31,6 @@ class Scorer {
 
   /// Stamp of the last event of each type of the model [ns], by id; none before the first.
   const std::vector<std::optional<std::int64_t>>& lastSeen() const { return last_seen_; }
-  const Model& model() const { return *model_; }
 
  private:
   std::shared_ptr<const Model> model_;

@@ -4,12 +4,7 @@
 
 namespace self_awareness::core {
 
-RecentCounts::RecentCounts(std::size_t types, std::size_t windows)
-    : types_(types),
-      windows_(windows),
-      open_(types, 0),
-      ring_(windows, std::vector<std::uint32_t>(types, 0)),
-      sums_(types, 0) {}
+RecentCounts::RecentCounts(std::size_t windows) : windows_(windows), ring_(windows) {}
 
 void RecentCounts::resize(std::size_t types) {
   if (types == types_) {

@@ -70,9 +70,6 @@ class AlarmState {
   const std::optional<core::Alarm>& ended() const { return ended_; }
   /// Whether there is an alarm or a suspicion.
   bool stands() const { return message_.level != self_awareness::SelfAwareness::OK; }
-  /// What is wrong with what components share, in words: the machine is too busy, or all of some
-  /// computers fell silent; else empty.
-  const std::string& shared() const { return shared_; }
   /// Whether anything was said since the start, or since forgetWindow().
   bool spoken() const { return !message_.message.empty(); }
   /// End of the window with which the level changed last [ns].
@@ -97,7 +94,8 @@ class AlarmState {
   std::optional<core::Alarm> ended_;
   self_awareness::SelfAwareness message_;
   std::string recording_;
-  std::string shared_;            // of the last window that had evidence
+  // What is wrong with what components share, in words, of the last window that had evidence.
+  std::string shared_;
   std::int64_t level_since_ = 0;  // end of the window with which the level changed last [ns]
 };
 

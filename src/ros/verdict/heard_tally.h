@@ -50,8 +50,6 @@ class HeardTally {
   /// ROS time was set: when a component was last heard means nothing any more.
   void onClockStep();
 
-  /// Number of components of the model.
-  std::size_t components() const { return components_.size(); }
   /// Seconds since the last report. @param now steady time [ns]
   double sinceReport(std::int64_t now) const;
   /// Reports, and begins to count for the next report.

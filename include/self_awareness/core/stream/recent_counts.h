@@ -12,9 +12,8 @@ namespace self_awareness::core {
 /// section 1.4).
 class RecentCounts {
  public:
-  /// @param types number of event types
   /// @param windows number of windows that are counted together, > 0
-  RecentCounts(std::size_t types, std::size_t windows);
+  explicit RecentCounts(std::size_t windows);
 
   /// Counts an event in the open window.
   /// @param id less than the number of types
@@ -33,7 +32,7 @@ class RecentCounts {
   const std::vector<std::uint32_t>& counts() const { return sums_; }
 
  private:
-  std::size_t types_;
+  std::size_t types_ = 0;
   std::size_t windows_;
   std::size_t closed_ = 0;
   std::vector<std::uint32_t> open_;               // by type

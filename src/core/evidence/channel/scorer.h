@@ -72,7 +72,6 @@ class Scorer {
   /// Forgets what was seen, but for the mode: a new recording starts, or the clock was set.
   void restart();
 
-  const Model& model() const { return *model_; }
   const Heard& heard() const { return heard_; }
   /// Whether the event that was added last may have waited while the whole robot stood still, or
   /// the machine had no time.

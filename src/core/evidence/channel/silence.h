@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "core/evidence/channel/channel.h"
 
 namespace self_awareness::core::evidence {

@@ -1,10 +1,8 @@
 #include "core/evidence/channel/values.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
-#include <string>
 #include <utility>
 
 #include "core/evidence/channel/share.h"

@@ -6,8 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "self_awareness/core/stream/event.h"
-
 namespace self_awareness::core::evidence {
 
 std::vector<std::size_t> startsOf(const std::vector<Span>& recordings, std::int64_t same_start) {

@@ -26,7 +26,7 @@ struct Trainer::OfMessages {
 };
 
 Trainer::Trainer(Statistics& statistics, std::int64_t window)
-    : statistics_(&statistics), window_(window), counts_(0, rateWindows(window)) {}
+    : statistics_(&statistics), window_(window), counts_(rateWindows(window)) {}
 
 Trainer::~Trainer() = default;
 
