@@ -133,7 +133,8 @@ def test_ctrl_c_ends_all_at_once(whom: Callable[[int, int], None], tmp_path: Pat
 
 def test_ctrl_c_ends_who_is_in_the_middle_of_an_answer(tmp_path: Path) -> None:
     program = program_of('answer_at_length', tmp_path, 'Connection.recv_bytes = interrupt')
-    ended = subprocess.run([sys.executable, '-c', program], stderr=subprocess.DEVNULL, timeout=30.0)
+    ended = subprocess.run([sys.executable, '-c', program], stderr=subprocess.DEVNULL,
+                           timeout=30.0)
     assert ended.returncode == -signal.SIGINT
     assert not any(map(alive, begun(tmp_path)))
 
