@@ -301,8 +301,10 @@ class IndexReader {
         if (entry.offset >= chunk.unpacked_bytes) {
           throw FormatError("a message beyond the end of its chunk");
         }
-        if (entry.stamp != 0) {  // rosbag, too, leaves out messages without a time
+        if (entry.stamp != 0) {
           index_.entries.push_back(entry);
+        } else {
+          ++index_.timeless;
         }
       }
       position_ += piece;

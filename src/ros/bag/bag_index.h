@@ -37,8 +37,9 @@ struct BagIndex {
   std::vector<std::uint32_t> numbers;  ///< of the connections, in the file
   /// In the order of the recording: by time, and in the order of the file where that is the same.
   std::vector<BagIndexEntry> entries;
-  bool by_python = false;  ///< rosbag's Python library wrote it
-  bool recorded = false;   ///< its connections have headers as `rosbag record` writes them
+  std::uint64_t timeless = 0;  ///< messages with the time 0: rosbag, too, leaves them out
+  bool by_python = false;      ///< rosbag's Python library wrote it
+  bool recorded = false;       ///< its connections have headers as `rosbag record` writes them
 };
 
 /// Called with the number of chunks that were checked, and of all; may throw to stop.

@@ -133,7 +133,11 @@ BagReader::BagReader(const std::vector<std::string>& paths, const Progress& prog
         ": an event log, not a bag of the robot's messages; its recordings have numbers");
   }
   if (index.entries.empty()) {
-    throw BagError(summary_.path + ": the bag is empty: it holds no messages; leave it out");
+    throw BagError(summary_.path +
+                   (index.timeless > 0
+                        ? ": all its messages have the time 0; write it again, "
+                          "with the times at which they came"
+                        : ": the bag is empty: it holds no messages; leave it out"));
   }
   summary_.bag = printable(summary_.path.substr(summary_.path.rfind('/') + 1));
   summary_.files = files_->files();
@@ -148,6 +152,10 @@ BagReader::BagReader(const std::vector<std::string>& paths, const Progress& prog
   summary_.one_sender_a_topic = index.by_python && topicsAreDistinct(index);
   summary_.copied = summary_.one_sender_a_topic && index.recorded;
   summary_.left_out = reasonsOf(index.connections);
+  if (index.timeless > 0) {
+    summary_.left_out.push_back("what has the time 0 (" + std::to_string(index.timeless) +
+                                " messages)");
+  }
 }
 
 BagReader::~BagReader() = default;

@@ -100,6 +100,7 @@ void RecordingFiles::add(const std::string& path, BagIndex index) {
       last_latched_[entry.connection] = entry;
     }
   }
+  index_.timeless += index.timeless;
   index_.by_python |= index.by_python;
   index_.recorded |= index.recorded;
   if (files_.size() == 1) {

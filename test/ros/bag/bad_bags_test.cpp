@@ -233,6 +233,18 @@ TEST_F(BadBagsTest, AChunkThatIsThereTwiceOrNotAtAllOrEncryptedIsRefused) {
   EXPECT_TRUE(has(errorOf("#ROSBAG V2.0\n" + header), "rosbag encrypt"));
 }
 
+TEST_F(BadBagsTest, WhatHasTheTimeZeroIsLeftOutAndTold) {
+  parts_.messages[0].first = 0;
+  EXPECT_EQ(errorOf(parts_.bag()), "");
+  EXPECT_EQ(events_.size(), 2U);
+  EXPECT_EQ(BagReader(path("bad.bag")).summary().left_out,
+            std::vector<std::string>{"what has the time 0 (1 messages)"});
+  for (auto& [second, content] : parts_.messages) {
+    second = 0;
+  }
+  EXPECT_TRUE(has(errorOf(parts_.bag()), "all its messages have the time 0; write it again"));
+}
+
 TEST_F(BadBagsTest, AChunkThatAnnouncesGigabytesIsRefused) {
   const MemoryLimit limit;
   const std::string zeros(1000, '\0');
