@@ -4,13 +4,12 @@
 
 namespace self_awareness::core {
 
-RecentCounts::RecentCounts(std::size_t windows) : windows_(windows), ring_(windows) {}
+RecentCounts::RecentCounts(std::size_t windows) : ring_(windows) {}
 
 void RecentCounts::resize(std::size_t types) {
-  if (types == types_) {
+  if (types == sums_.size()) {
     return;
   }
-  types_ = types;
   open_.resize(types, 0);
   sums_.resize(types, 0);
   for (std::vector<std::uint32_t>& counts : ring_) {
@@ -19,8 +18,8 @@ void RecentCounts::resize(std::size_t types) {
 }
 
 void RecentCounts::close() {
-  std::vector<std::uint32_t>& oldest = ring_[closed_ % windows_];
-  for (std::size_t id = 0; id < types_; ++id) {
+  std::vector<std::uint32_t>& oldest = ring_[closed_ % ring_.size()];
+  for (std::size_t id = 0; id < sums_.size(); ++id) {
     sums_[id] += open_[id] - oldest[id];
   }
   oldest.swap(open_);

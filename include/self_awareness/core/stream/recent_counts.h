@@ -27,13 +27,11 @@ class RecentCounts {
   void restart();
 
   /// Whether enough windows were closed for counts() to be valid.
-  bool full() const { return closed_ >= windows_; }
+  bool full() const { return closed_ >= ring_.size(); }
   /// Events in the last closed windows, by type.
   const std::vector<std::uint32_t>& counts() const { return sums_; }
 
  private:
-  std::size_t types_ = 0;
-  std::size_t windows_;
   std::size_t closed_ = 0;
   std::vector<std::uint32_t> open_;               // by type
   std::vector<std::vector<std::uint32_t>> ring_;  // of closed windows, each by type
