@@ -126,7 +126,7 @@ bool Strangers::anyList(std::int64_t now) const {
 }
 
 bool Strangers::isKnownByName(EventId id) const {
-  if (!heard_ || id >= heard_->size()) {
+  if (!hasType(id)) {
     return false;
   }
   const SourceGraph::Publication publication(heard_->at(id).source, heard_->at(id).scope);
@@ -134,7 +134,7 @@ bool Strangers::isKnownByName(EventId id) const {
 }
 
 bool Strangers::isUsualLine(EventId id) const {
-  if (!heard_ || id >= heard_->size()) {
+  if (!hasType(id)) {
     return false;
   }
   const EventType& type = heard_->at(id);
@@ -146,7 +146,7 @@ bool Strangers::isUsualLine(EventId id) const {
 std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const {
   std::map<std::string, std::int64_t> silences;
   for (const auto& [id, sent] : sent_) {
-    if (heard_ && id < heard_->size()) {
+    if (hasType(id)) {
       std::int64_t& of_source =
           silences.try_emplace(heard_->at(id).source, now - sent.last).first->second;
       of_source = std::min(of_source, now - sent.last);
@@ -161,8 +161,8 @@ std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& sco
   std::vector<Suspect> suspects;
   for (const auto& [id, sent] : sent_) {
     const std::int64_t age = scorer.heard().windowEnd() - sent.last;
-    const bool is_one = unusual == nullptr ? isStranger(id) : explains(id, *unusual);
-    if (age > kRateSpan || sent.first < since || !is_one || moved.isPlaceOf(id)) {
+    if (age > kRateSpan || sent.first < since || moved.isPlaceOf(id) ||
+        !(unusual == nullptr ? isStranger(id) : explains(id, *unusual))) {
       continue;
     }
     Suspect suspect = unknownSuspect(id, window);
@@ -175,7 +175,7 @@ std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& sco
 }
 
 bool Strangers::isStranger(EventId id) const {
-  if (!heard_ || id >= heard_->size()) {
+  if (!hasType(id)) {
     return false;
   }
   if (heard_->tellsList(id)) {
@@ -189,7 +189,7 @@ bool Strangers::isStranger(EventId id) const {
 }
 
 bool Strangers::explains(EventId id, const Suspect& unusual) const {
-  if (!heard_ || id >= heard_->size() || heard_->tellsList(id)) {
+  if (!hasType(id) || heard_->tellsList(id)) {
     return false;
   }
   const EventType& type = heard_->at(id);

@@ -64,6 +64,8 @@ class Strangers {
  private:
   /// An event type that training never saw, as a suspect of a window.
   Suspect unknownSuspect(EventId id, const Window& window) const;
+  /// Whether it is known what type an id is of.
+  bool hasType(EventId id) const { return heard_ && id < heard_->size(); }
   bool isStranger(EventId id) const;
   /// Whether it is why another one is unusual: a stranger, or what this one hears, or, where
   /// nobody knows who hears whom, any if it sends too often. No list is.
