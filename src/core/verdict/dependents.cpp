@@ -26,19 +26,19 @@ std::set<std::string> subscribersOf(const SourceGraph& graph, const std::string&
 
 }  // namespace
 
-std::set<std::string> dependentsOf(const SourceGraph& graph, const std::string& source) {
-  std::set<std::string> reached;
+std::set<std::string> dependentsOf(const SourceGraph& graph, const std::string& source,
+                                   std::set<std::string> known) {
   std::vector<std::string> ways{source};
   while (!ways.empty()) {
     const std::string publisher = std::move(ways.back());
     ways.pop_back();
     for (const std::string& subscriber : subscribersOf(graph, publisher)) {
-      if (reached.insert(subscriber).second) {
+      if (known.insert(subscriber).second) {
         ways.push_back(subscriber);
       }
     }
   }
-  return reached;
+  return known;
 }
 
 std::string waitingFor(const SourceGraph& graph, const std::string& source,

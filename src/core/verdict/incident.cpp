@@ -69,7 +69,9 @@ std::vector<std::string> togetherWith(const Occurrence& main, const SourceGraph&
 /// before it is no fault of its own, either.
 void divide(std::vector<std::string> named, const SourceGraph& graph, Incident& incident) {
   std::set<std::string> reached;
-  const auto reach = [&](const std::string& cause) { reached.merge(dependentsOf(graph, cause)); };
+  const auto reach = [&](const std::string& cause) {
+    reached = dependentsOf(graph, cause, std::move(reached));
+  };
   std::vector<std::string> causes = incident.together;
   if (!incident.cause.empty()) {
     causes.insert(causes.begin(), incident.cause);

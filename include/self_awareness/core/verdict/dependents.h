@@ -9,7 +9,9 @@ namespace self_awareness::core {
 
 /// Who needs messages of a source, directly or through others: its victims, when it fails. Nobody
 /// needs what others write into the log (/rosout).
-std::set<std::string> dependentsOf(const SourceGraph& graph, const std::string& source);
+/// @param known those of other sources, which are returned, too, and not looked for again
+std::set<std::string> dependentsOf(const SourceGraph& graph, const std::string& source,
+                                   std::set<std::string> known = {});
 
 /// Who waits for whom, from the one that is farthest from a source back to it: "/costmap waits for
 /// /filter, /filter for /lidar (3 nodes wait in all)"; empty: nobody does.
